@@ -21,11 +21,11 @@ from lumen.statechart.nesting import active_names, entered_names
 _OWN = re.compile(r"(.*\.)?[cd]\d+(@.*)?")
 """The id of a command of the behaviour, also with the suffix it has between processes."""
 MAX_UNDER_WAY = 200
-"""Unfinished commands of a kind that are remembered; one more makes the oldest be forgotten."""
+"""The number of unfinished commands of a kind that are remembered; one more makes the oldest be forgotten."""
 
 
 class UnderWay(NamedTuple):
-    """A text that is said, or a motion under way."""
+    """A text that is being said, or a motion under way."""
 
     what: str
     """The verb."""
@@ -49,8 +49,8 @@ class Spoken(NamedTuple):
 class ActivityTracker(Observer):
     """An observer that records the current activity.
 
-    `project`, `snapshot` and `now` return the bundle, the snapshot, and the time [s]. A command that waits
-    for another of its kind counts from the end of that one.
+    `project`, `snapshot` and `now` return the bundle, the snapshot, and the time [s]. A command that waits for another
+    of its kind counts from the end of that one.
     """
 
     def __init__(
@@ -61,16 +61,18 @@ class ActivityTracker(Observer):
         self.since: dict[str, float] = {}
         """When each active state became active [s], by name."""
         self.heard: Spoken | None = None
-        """The last words of a visitor."""
+        """The last words of a visitor; None before any."""
         self._speaking: dict[str, UnderWay] = {}
         self._moving: dict[str, UnderWay] = {}
         self._others: dict[str, None] = {}
         self.told: deque[Message] = deque(maxlen=MAX_UNDER_WAY)
-        """Texts for the robot that arrived on the bus; any thread may append."""
+        """Texts for the robot that arrived on the bus; any thread may append a message."""
 
     @property
     def saying(self) -> UnderWay | None:
-        """The text that is said now. One whose end is not reported counts for at most its expected duration."""
+        """The text that is said now, else None. If its end is not reported, it counts for its expected duration at
+        most.
+        """
         for id, said in tuple(self._speaking.items()):
             if said.seconds is None or self._now() - said.since < said.seconds:
                 return said
@@ -79,16 +81,18 @@ class ActivityTracker(Observer):
 
     @property
     def motion(self) -> UnderWay | None:
-        """The oldest motion under way."""
+        """The oldest motion under way, else None."""
         return next(iter(self._moving.values()), None)
 
     @property
     def commands(self) -> int:
-        """Number of unfinished commands."""
+        """The number of unfinished commands."""
         return len(self._speaking) + len(self._moving) + len(self._others)
 
     def look(self) -> None:
-        """Read the texts from the bus, and update the active states if a reload changed them; called before a tick."""
+        """Read the texts from the bus, and update the active states if a reload changed them; call this before each
+        tick.
+        """
         while self.told:
             self._hear(self.told.popleft())
         now = self._snapshot()
@@ -107,7 +111,7 @@ class ActivityTracker(Observer):
             self.heard = Spoken(said, step.event.at)
 
     def approval(self, how: str, held: HeldEvent, why: str) -> None:
-        """Record a visitor's words when their event starts to wait: they are heard before a person decides."""
+        """Record a visitor's words when their event starts to wait, because they were said before a person decides."""
         if how == "waits" and (said := self._words(held.event)):
             self.heard = Spoken(said, held.event.at)
 
@@ -165,7 +169,7 @@ class ActivityTracker(Observer):
         _keep_few(all)
 
     def _end(self, all: dict[str, UnderWay], id: str) -> None:
-        """Remove a command. If it was the first of its kind, the next one begins now."""
+        """Remove a command; if it was the first of its kind, the next one begins now."""
         was_first = next(iter(all), None) == id
         if all.pop(id, None) is not None and was_first and all:
             first = next(iter(all))

@@ -19,11 +19,11 @@ from lumen.upkeep.drops import DropLog
 from lumen.upkeep.threads import WatchedThread
 
 MAX_WAITING_QUESTIONS = 20
-"""Questions that may wait for an answer; further ones are dropped."""
+"""The number of questions that may wait for an answer; further ones are dropped."""
 DAY = 86_400.0
-"""Seconds in a day [s]."""
+"""The length of a day [s]."""
 MAX_QUESTION = 500
-"""Characters that are used of the text to explain; the rest is cut off."""
+"""The number of characters that are used of the text to explain; the rest is cut off."""
 AnswerMaker = Callable[[], dict[str, Any]]
 """A function that returns an answer as JSON data."""
 
@@ -33,8 +33,8 @@ _log = logging.getLogger(__name__)
 def answer(steps: Sequence[RecordedStep], question: str, what: str, at: str | None = None) -> dict[str, Any]:
     """Return the answer to a question as JSON data.
 
-    `question` is the `ask` of `why`; any other value is answered as `why-not`. `at` is an ISO 8601 time until which to
-    look. Raises UsageError, with advice, if there is no answer.
+    `question` is the `ask` of `why`; any other value is answered as `why-not`. `at` is an ISO 8601 time: only what
+    happened until then counts. Raises UsageError, with advice, if there is no answer.
     """
     from lumen.insight.explaining.answers import why, why_not  # thirty modules that only a question needs
 
@@ -55,7 +55,9 @@ def moment_of(text: str) -> float:
 
 
 def _until(steps: Sequence[RecordedStep], at: str) -> float:
-    """Return an ISO 8601 time on the exhibition's clock [s]. Raises TooLongAgoError if memory begins later."""
+    """Return an ISO 8601 time on the exhibition's clock [s]. Raises TooLongAgoError if it is before the first step in
+    memory.
+    """
     moment = moment_of(at)
     if not steps:
         raise TooLongAgoError("no steps from that time are in memory")
@@ -81,8 +83,8 @@ class TooLongAgoError(UsageError):
 class AnsweringThread:
     """A thread that answers questions one after another.
 
-    `steps` returns the steps so far and is called on the thread that asks. `journal` is the writer whose pages answer
-    requests for the journal.
+    `steps` returns the steps so far, and is called on the thread of the caller. `journal` is the writer whose pages
+    answer requests for the journal.
     """
 
     def __init__(self, bus: Bus, steps: Callable[[], list[RecordedStep]], journal: JournalWriter) -> None:
@@ -123,7 +125,7 @@ class AnsweringThread:
 
 
 def _made(make: AnswerMaker) -> Any:
-    """Return what `make` returns. An error in it refuses only this question, and is logged."""
+    """Return the result of `make`; an error in it is logged, and refuses only this question."""
     try:
         return make()
     except Exception as error:

@@ -20,13 +20,13 @@ from lumen.statechart import Snapshot, Step, step
 from lumen.statechart.nesting import behavior_of
 
 MAX_WAITING = 20
-"""Events that may wait for GO at once; one more makes the oldest stay."""
+"""The number of events that may wait for GO at once; one more makes the oldest stay."""
 LEFT, REPLACED, LATE = "the behaviour left the state", "too many other approvals are waiting", "no answer came"
 RELOADED, FORGOTTEN = "the files changed", "a visitor's data was deleted"
 
 
 class MarkedTransition(NamedTuple):
-    """A transition marked for approval, with its machine."""
+    """A transition marked for approval, with its machine and its `approve`."""
 
     machine: MachineDefinition
     transition: Transition
@@ -55,7 +55,10 @@ class ApprovalWatcher(Protocol):
     """An observer of events that wait for approval."""
 
     def approval(self, how: str, held: HeldEvent, why: str) -> None:
-        """Called when an event `waits`, `goes` or `stays` (`how`), with the reason."""
+        """Called when an event starts to wait, goes or stays (`how` is `waits`, `goes` or `stays`).
+
+        `why` is the reason, in words.
+        """
         ...
 
 
@@ -69,7 +72,7 @@ class Approvals:
         self.autonomy: Autonomy = "ask"
         self.waiting: tuple[HeldEvent, ...] = ()
         self.watchers: list[ApprovalWatcher] = []
-        """Called whenever an event starts to wait, goes or stays."""
+        """Notified whenever an event starts to wait, goes or stays."""
         self.marked = False
         """Whether the machine has transitions that are marked for approval."""
         self._ids = count(1)
@@ -82,20 +85,21 @@ class Approvals:
         return -inf if self._released else min((held.until for held in self.waiting), default=inf)
 
     def use(self, machine: MachineDefinition, snapshot: Snapshot | None = None) -> None:
-        """Switch to a machine. With a snapshot, drop waiting events that trigger no marked transition there."""
+        """Switch to a machine; with a snapshot, drop waiting events that trigger no marked transition there."""
         self.marked = marked_transitions(machine)
         self._passing.clear()
         if snapshot:
             self.look(machine, snapshot, RELOADED)
 
     def holds(self, machine: MachineDefinition, snapshot: Snapshot, event: Event) -> bool:
-        """Return whether an event must wait for GO, and keep it if so.
+        """Return whether an event must wait for GO, and hold it if so.
 
-        Never hold commands' answers and delayed events of the behaviour, or an event that a person has just approved.
+        Answers to commands, delayed events of the behaviour and events that a person has just approved never wait. If
+        another event already waits for the same transition, this one is dropped.
         """
         if self.autonomy == "alone" or event.sendid or ".command." in event.name:
             return False
-        # compared by identity: an equal cause may belong to another event
+        # compared by identity, because an equal cause may belong to another event
         if any(event.cause is cause for cause in self._passing):
             self._passing = [cause for cause in self._passing if cause is not event.cause]
             return False
@@ -171,7 +175,7 @@ def _marked_by(machine: MachineDefinition, snapshot: Snapshot, event: Event) -> 
 
 
 def _marked(machine: MachineDefinition, taken: Step) -> MarkedTransition | None:
-    """Return the first marked transition that a step has taken, or None."""
+    """Return the first marked transition that a step has taken, else None."""
     return next(_all_marked(machine, taken), None)
 
 

@@ -12,10 +12,10 @@ from lumen.ports import BlockableBus, Bus, ReturningBus
 OPERATOR_ANSWERS = OPERATOR_ANSWER
 """The key on which the answers of a running exhibition arrive."""
 FIRST_ANSWER_TIMEOUT = 10.0
-"""Longest wait for the first answer [s]: the exhibition may load files for it."""
+"""The longest wait for the first answer [s], because the exhibition may load files for it."""
 
 NOBODY = object()
-"""Queued instead of an answer if the broker returned the message as undeliverable."""
+"""Queued in place of an answer if the broker returned the message as undeliverable."""
 
 
 def operator_key(robot: str) -> str:
@@ -24,9 +24,9 @@ def operator_key(robot: str) -> str:
 
 
 def send_request(bus: Bus, key: str, body: Any, reply_to: str, *, first: float = FIRST_ANSWER_TIMEOUT) -> Iterator[Any]:
-    """Publish a message, and yield its answers as they arrive; the caller stops after the last.
+    """Publish a message, and yield its answers as they arrive; stop the iteration after the last one.
 
-    Raises BusUnreachableError if no answer arrives within `first` [s], the message comes back undelivered, or the
+    Raises BusUnreachableError if no answer arrives within `first` [s], if the message comes back undelivered, or if the
     broker blocks publishers.
     """
     answers: queue.SimpleQueue[Any] = queue.SimpleQueue()

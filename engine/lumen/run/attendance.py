@@ -11,11 +11,11 @@ from lumen.ports import Bus, Message
 from lumen.run.presence import HERE, PRESENCE_PERIOD, PRESENCE_ROUTE, ROBOT_PART
 
 PRESENCE_TIMEOUT = 4 * PRESENCE_PERIOD
-"""Longest wait for a sign of life [s]: four of their periods."""
+"""The longest wait for a sign of life [s]: four of their periods."""
 
 
 MAX_PARTS = 20
-"""Parts that are read from one message; the rest are ignored."""
+"""The number of parts that are read from one message; the rest are ignored."""
 
 
 class RobotAttendance:
@@ -25,7 +25,7 @@ class RobotAttendance:
         self._robot, self._here = project.robot, threading.Event()
         self._modules, self._received = set[str](), threading.Event()
         self.skills: Mapping[str, object] | None = None
-        """The hashes of the skills' code that the robot's process has, by skill; None before any was received."""
+        """The hashes of the skills' code in the robot's process, by skill; None before a message has them."""
         with suppress(BusError):  # a missing permission to read is reported elsewhere
             bus.subscribe(project.key_of(PRESENCE_ROUTE), self._hear)
 
@@ -34,7 +34,7 @@ class RobotAttendance:
         return self._here.wait(PRESENCE_TIMEOUT)
 
     def lacking(self, modules: Collection[str]) -> set[str]:
-        """Return the modules among these that show no sign of life within PRESENCE_TIMEOUT."""
+        """Return the modules among these that show no sign of life within PRESENCE_TIMEOUT; return early if all do."""
         until = time.monotonic() + PRESENCE_TIMEOUT
         while (left := set(modules) - self._modules) and time.monotonic() < until:
             self._received.wait(0.1)
@@ -42,7 +42,7 @@ class RobotAttendance:
         return left
 
     def await_skills(self) -> Mapping[str, object] | None:
-        """Return `skills` once they were received; None if they were not within PRESENCE_TIMEOUT."""
+        """Wait up to PRESENCE_TIMEOUT for `skills`, and return them; None if none arrived."""
         until = time.monotonic() + PRESENCE_TIMEOUT
         while self.skills is None and time.monotonic() < until:
             self._received.wait(0.1)

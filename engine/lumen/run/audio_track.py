@@ -6,7 +6,7 @@ from typing import Any
 from lumen.run.sound import Sound
 
 RATE = 44_100
-"""Sample rate of the track [1/s]."""
+"""The sample rate of the track [1/s]."""
 
 
 class AudioTrack:

@@ -1,6 +1,6 @@
 """The choice among a recogniser's alternative texts: the first that means something now.
 
-It is chosen before the step, so that the journal records the choice.
+It is made before the step, so that the journal records the chosen text.
 """
 
 from collections.abc import Iterator
@@ -17,14 +17,14 @@ from lumen.language.routes import HEARD
 from lumen.statechart import Snapshot, Step, step
 
 MAX_ALTERNATIVES = 10
-"""Alternatives that are tried, including the recogniser's first result."""
+"""The number of alternatives that are tried, including the recogniser's first result."""
 _COMPARES = frozenset(("heard", "lookup"))
 
 
 def best_alternative(machine: MachineDefinition, snapshot: Snapshot, event: Event) -> Event:
-    """Return a `heard` event with the first `result` that triggers a transition depending on phrases.
+    """Return a `heard` event with the first text that triggers a transition which depends on phrases.
 
-    Return the event unchanged if it has no alternatives, or none of them takes such a transition. The steps are only
+    The event is returned unchanged if it has no alternatives, or no text triggers such a transition. The steps are only
     tried.
     """
     data = event.data
@@ -58,7 +58,7 @@ def _means_something(taken: Step) -> bool:
 
 @lru_cache(maxsize=1000)
 def _asks_for_phrases(guard: str) -> bool:
-    """Return whether a guard compares a text with phrases, outside a negation."""
+    """Return whether a guard searches a text for phrases, outside a negation."""
     return _compares(parse_expression(guard))
 
 

@@ -10,7 +10,7 @@ from lumen.errors import LumenError
 EPOCH = (1980, 1, 1, 0, 0, 0)
 """The date of every file in a bundle, so that the same files make the same zip."""
 OWNER_ONLY = 0o600 << 16
-"""File permissions after unpacking (owner only), as zip stores them."""
+"""The file permissions after unpacking (owner only), as zip stores them."""
 
 
 class DamagedBundleError(LumenError):

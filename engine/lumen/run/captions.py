@@ -3,7 +3,7 @@
 from lumen.language.machines import Invoke, Transition
 
 MAX_GUARD_LENGTH = 32
-"""Characters of a guard that are shown."""
+"""The number of characters of a guard that are shown."""
 
 
 def invocation(invoke: Invoke) -> str:

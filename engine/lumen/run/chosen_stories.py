@@ -1,4 +1,4 @@
-"""The stories and sayings that a word on the command line names: by name, pattern of names, or file."""
+"""The stories and sayings meant by a word on the command line: by name, pattern of names, or file."""
 
 import os
 from collections.abc import Iterable, Iterator, Mapping
@@ -21,7 +21,9 @@ T = TypeVar("T")
 
 
 def project_of(words: Iterable[str]) -> str | None:
-    """Return the project of the first file in a `behaviors/stories/` or `sayings/` folder, None if there is none."""
+    """Return the project of the first file among these words in a folder of `behaviors/`; None if there is no such
+    file.
+    """
     for word in words:
         file = Path(os.path.abspath(word))
         if _is_file(word) and len(file.parents) > 2 and (file.parents[2] / MAIN_FILE).is_file():
@@ -30,9 +32,9 @@ def project_of(words: Iterable[str]) -> str | None:
 
 
 def stories_of(project: Project, word: str) -> Iterator[Story]:
-    """Yield the stories of a project that a word names: `shy`, `shy.yaml`, a path to that file, or `safety_*`.
+    """Yield the stories of a project that a word means: `shy`, `shy.yaml`, a path to that file, or `safety_*`.
 
-    Raises UsageError if it names none: a file outside the project is not one of its stories, whatever its name.
+    Raises UsageError if it means no story. A file outside the project is not one of its stories, whatever its name.
     """
     found = _named(project, word, FOLDER, project.stories)
     if not found:
@@ -41,9 +43,9 @@ def stories_of(project: Project, word: str) -> Iterator[Story]:
 
 
 def tests_of(project: Project, word: str) -> tuple[list[Story], list[SayingSet]]:
-    """Return the stories and the files of sayings that a word names, by the rules of `stories_of`.
+    """Return the stories and the files of sayings that a word means, by the rules of `stories_of`.
 
-    Raises UsageError if it names none.
+    Raises UsageError if it means none.
     """
     found = (
         _named(project, word, FOLDER, project.stories),
@@ -60,7 +62,7 @@ def _is_file(word: str) -> bool:
 
 
 def _named(project: Project, word: str, folder: Path, known: Mapping[str, T]) -> list[T]:
-    """Return the entries of `known` that a word names.
+    """Return the entries of `known` that a word means.
 
     A path may be relative to the working directory, the project or `folder`.
     """
@@ -75,7 +77,7 @@ def _named(project: Project, word: str, folder: Path, known: Mapping[str, T]) ->
 
 
 def _nothing(project: Project, word: str, known: Iterable[str], what: str) -> UsageError:
-    """Return the error for a word that names nothing in a project."""
+    """Return the error for a word that means nothing in a project."""
     if Path(word).is_file():
         folder = Path(os.path.abspath(project.root)) / FOLDER
         return UsageError(f"{word} is not in {folder}: move it there, so that it is checked with the project")

@@ -1,6 +1,6 @@
 """The claim of a robot's name: a bus has one robot of a name, with one brain and one motion module.
 
-A process that comes second is refused.
+A process whose robot or part is already there is refused.
 """
 
 from collections.abc import Callable, Mapping
@@ -13,9 +13,9 @@ from lumen.ports import BlockableBus, Bus
 from lumen.run.presence import PRESENCE_ROUTE, Presence, unique_parts, where_it_runs
 
 CLAIM_DURATION = 0.8
-"""Time that a process waits for objections to its claim [s]."""
+"""The time that a process waits for objections to its claim [s]."""
 CLAIM_INTERVAL = 0.02
-"""Pause between two looks for objections [s]."""
+"""The pause between two checks for objections [s]."""
 
 
 def presence_of(project: Project, bus: Bus, parts: tuple[str, ...], more: Callable[[], Mapping[str, Any]]) -> Presence:

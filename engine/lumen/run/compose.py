@@ -21,8 +21,8 @@ _log = logging.getLogger(__name__)
 def compose(plan: Plan) -> Services:
     """Build an exhibition from a plan: all parts except those that are made after the claim (`start`).
 
-    Raises BusError if the bus can't be reached, and any error of a part's maker; then everything made so far is closed.
-    If code of an installed package fails, its part is left out and the failure is logged; to refuse the start, the
+    Raises BusError if the bus can't be reached, and any error of a part's maker; everything made so far is then closed.
+    If code of an installed package fails, its part is left out and the failure is logged; to prevent the start, the
     package raises a LumenError.
     """
     services = Services(plan)
@@ -39,11 +39,11 @@ def start(exhibitions: Sequence[Services]) -> None:
 def claim(exhibitions: Sequence[Services]) -> None:
     """Wait for objections of other processes with the same robots or roles.
 
-    Raises UsageError if there is one.
+    Raises UsageError if another process objects.
     """
     waiting = [one.node for one in exhibitions]
     for node in waiting:
-        node.request()  # ask now: making the parts can take longer than the time for objections
+        node.request()  # request now: making the parts can take longer than the time for objections
     while waiting := [node for node in waiting if node.claims()]:
         time.sleep(CLAIM_INTERVAL)
 
@@ -75,7 +75,7 @@ def _add(services: Services, place: int, row: PartRow) -> None:
         services.add(place, *(_guarded(services, row, feature, part) for part in parts))
     except (LumenError, KeyboardInterrupt):
         raise
-    except BaseException as error:  # even SystemExit
+    except BaseException as error:  # a package's code may even raise SystemExit
         if feature is None:
             raise
         fault = f"the part `{row.name}` is left out: {blamed(feature, row.make, error)}"
@@ -85,12 +85,12 @@ def _add(services: Services, place: int, row: PartRow) -> None:
 
 
 def _guarded(services: Services, row: PartRow, feature: Feature | None, part: Part) -> Part:
-    """Return a part of a package wrapped so that its faults end only that part; return Lumen's own parts unchanged."""
+    """Return a package's part, wrapped so that its faults end only that part; return Lumen's own parts unchanged."""
     return AddedPart(part, feature, row, services.part_stopped) if feature else part
 
 
 def _feature_of(row: PartRow) -> Feature | None:
-    """Return the installed package's feature that has a row; None for a row of Lumen."""
+    """Return the installed package's feature that provides a row; None for a row of Lumen."""
     found = (feature for feature, each in rows("parts") if each is row and distribution_of(feature))
     return next(found, None)
 

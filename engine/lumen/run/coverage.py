@@ -18,17 +18,20 @@ class Gap(NamedTuple):
 
     place: Place
     what: str
+    """The gap in words."""
 
 
 @dataclass
 class Coverage:
-    """States entered, by name, and transitions taken, by their places, for each behaviour that ran; and skills used."""
+    """The states, transitions and skills that a number of runs covered."""
 
     project: Project
     entered: dict[str, set[str]] = field(default_factory=dict)
     """Names of the entered states, by behaviour."""
     taken: dict[str, set[NodePath]] = field(default_factory=dict)
+    """Paths of the taken transitions, by behaviour."""
     used: set[str] = field(default_factory=set)
+    """Names of the skills used."""
 
     def of(self, behavior: str) -> Observer:
         """Return an observer that counts the steps of a run of a behaviour."""
@@ -43,19 +46,19 @@ class Coverage:
 
     @property
     def states(self) -> tuple[int, int]:
-        """Number of entered states, and of all states, in the behaviours that ran."""
+        """The number of entered states, and of all states, in the behaviours that ran."""
         wanted = [(b, s.name) for b in self.entered for s in _states(self.project.behaviors[b])]
         return sum(name in self.entered[b] for b, name in wanted), len(wanted)
 
     @property
     def transitions(self) -> tuple[int, int]:
-        """Number of taken transitions, and of all transitions, in the behaviours that ran."""
+        """The number of taken transitions, and of all transitions, in the behaviours that ran."""
         wanted = [(b, t.where) for b in self.entered for t in _transitions(self.project.behaviors[b])]
         return sum(where in self.taken[b] for b, where in wanted), len(wanted)
 
     @property
     def skills(self) -> tuple[int, int]:
-        """Number of the project's own skills that were used, and of all."""
+        """The number of the project's own skills that were used, and of all of them."""
         return len(self.used.intersection(self.project.verbs)), len(self.project.verbs)
 
     @property
@@ -66,11 +69,11 @@ class Coverage:
 
     @property
     def percent(self) -> float:
-        """The lowest coverage of any kind [%]."""
+        """The lowest coverage of any kind [%]; 100 of a kind without items."""
         return min(100.0 * some / every if every else 100.0 for some, every in self.counts.values())
 
     def gaps(self) -> list[Gap]:
-        """Return what was not covered, sorted by file and line."""
+        """Return the uncovered items, sorted by file and line."""
         unused = (
             Gap(Place(f"skills/{name}.yaml"), f"skill `{name}` is never used")
             for name in self.project.verbs

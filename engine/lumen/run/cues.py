@@ -16,8 +16,8 @@ _log = logging.getLogger(__name__)
 class MotionCues:
     """A translator from a motion's cue events to commands.
 
-    Words wait for the voice like every `say`, under ids `cue1`, `cue2`, …. If a motion is cancelled or fails, its
-    words, sounds and skills are cancelled. A sound that is missing or can't be played is logged once and left out.
+    Texts wait for the voice like every `say`, under ids `cue1`, `cue2`, …. If a motion is cancelled or fails, its
+    texts, sounds and skills are cancelled. A sound that is missing or can't be played is logged once and left out.
     """
 
     def __init__(self) -> None:
@@ -33,7 +33,9 @@ class MotionCues:
                 self._playing[id] = motion
 
     def answered(self, event: Event, project: Project, language: str) -> list[Command]:
-        """Return the commands that an event of the robot asks for."""
+        """Return the commands that follow from an event of the robot: a cue's command, or the ends of a motion's
+        commands.
+        """
         if event.name == CUE and isinstance(event.data, Mapping):
             return self._cue(event.data, project, language)
         kind, _, id = event.name.partition(".command.")
@@ -53,7 +55,7 @@ class MotionCues:
         return [self._begin(skill, motion)] if skill else []
 
     def _begin(self, command: BodyCommand, motion: str) -> Start:
-        """Return the command that begins something of a motion, and remember that it ends with the motion."""
+        """Return the command that begins a motion's text, sound or skill, and remember that it ends with the motion."""
         self._number += 1
         id = f"cue{self._number}"
         self._saying[id] = motion
@@ -71,7 +73,7 @@ class MotionCues:
 
 
 def words(value: object, language: str, default: str) -> str:
-    """Return the text of a `say` in `language`, else in `default`, else in any; empty if it has none."""
+    """Return the text of a `say` in `language`, else in `default`, else in any language; empty if it has no text."""
     if isinstance(value, Mapping):
         value = value.get(language) or value.get(default) or next(iter(value.values()), "")
     return value if isinstance(value, str) else ""

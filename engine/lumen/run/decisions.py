@@ -17,7 +17,7 @@ from lumen.run.raised_events import refusal
 
 
 class RequestChecks:
-    """A checker of bodies by the schemas of all requests; a schema is compiled for its first request."""
+    """A checker of bodies by the schemas of all requests; each schema is compiled when it is first needed."""
 
     def __init__(self) -> None:
         self._rows = {row.ask: (row, SchemaCheck(row.schema)) for row in REQUESTS}
@@ -45,7 +45,7 @@ UNREADABLE = f"a person whom {SILENCED_FILE} does not name"
 
 
 class ModelSwitch:
-    """The switch of the language model; it takes effect at once, also in the middle of an answer.
+    """The switch of the language model; it takes effect at once, even in the middle of an answer.
 
     `record` writes an entry of the journal. The choice is restored from `folder` and saved there; without a folder it
     ends with the run.
@@ -60,7 +60,7 @@ class ModelSwitch:
     ) -> None:
         self._questions, self._project, self._record = questions, project, record
         self._home = Home(folder) if folder else None
-        if folder and self._home and (folder / SILENCED_FILE).exists():  # also if the name in it is unreadable
+        if folder and self._home and (folder / SILENCED_FILE).exists():  # with an unreadable name, too
             found = self._home.read_json(SILENCED_FILE)
             self._questions.silence(str((found.get("by") if isinstance(found, dict) else "") or UNREADABLE))
 
@@ -104,8 +104,8 @@ class DecisionRecords(Protocol):
 class Decisions:
     """People's decisions, each with a line in the transcript.
 
-    `record` writes an entry of the journal, `keep` saves the current decisions and waiting events, and `publish` sends
-    to the bus how each event was decided.
+    `record` writes an entry of the journal, `keep` saves the current decisions and waiting events, and `publish`
+    announces on the bus that an event waits, goes or stays.
     """
 
     def __init__(
@@ -121,7 +121,7 @@ class Decisions:
         approvals.watchers.append(self)
 
     def recover(self, kept: Any, *, resumed: bool) -> None:
-        """Restore the autonomy of a run that crashed, and report the events that waited then and are lost."""
+        """Restore the autonomy of a run that crashed, and report the waiting events that were lost with it."""
         match kept:
             case {"autonomy": "ask" | "alone" as level, "waiting": list(waiting)} if resumed:
                 self._approvals.autonomy = level

@@ -13,7 +13,7 @@ from lumen.run.tracking import LocalTracking
 
 MOTION_ROUTE = "motion"
 MOTION_TTL = 2.0
-"""Lifetime of a request to the motion module [s]."""
+"""The time to live of a request to the motion module [s]."""
 
 _log = logging.getLogger(__name__)
 
@@ -25,7 +25,7 @@ def motion_key(project: Project) -> str:
 
 
 class DelegatedTracking:
-    """Controllers and motions, done by the motion module while it is available and else by `own`.
+    """Controllers and motions, run by the motion module while it is available, else by `own`.
 
     `able` returns the session of a motion module that has the same files as this process, or an empty string. `time`
     returns the robot's clock [s], by which poses and sightings are dated, or None while it is unknown.
@@ -40,11 +40,11 @@ class DelegatedTracking:
 
     @property
     def on(self) -> tuple[str, ...]:
-        """Names of the controllers that are on."""
+        """The names of the controllers that are on."""
         return tuple(self._on)
 
     def reload(self, project: Project) -> None:
-        """Switch to another bundle; controllers that it lacks go off."""
+        """Switch to another bundle; controllers that it lacks are switched off."""
         self._own.reload(project)
         self._project = project
         self._on = {name: None for name in self._on if name in project.controllers}
@@ -61,7 +61,7 @@ class DelegatedTracking:
             self._own.switch(track)
 
     def tick(self, now: float) -> None:
-        """Move the controllers if the motion module came, left or restarted, and run them while they are here."""
+        """Hand the controllers over if the motion module came, left or restarted, and run them here without it."""
         helper = self._able()
         if helper != self._helper:
             self._helper = helper
@@ -81,14 +81,14 @@ class DelegatedTracking:
                 self._own.switch(Track(name))
 
     def play(self, id: str, command: Perform) -> bool:
-        """Ask the motion module to play a motion under an id; return False if it can't."""
+        """Request the motion module to play a motion under an id; return False if it can't."""
         name = command.motion.name
         if not self._able() or self._project.motions.get(name) is not command.motion:
             return False
         return self._request({"id": id, "play": name, "bundle": self._project.hash})
 
     def _delegate(self, track: Track) -> None:
-        """Ask the motion module to switch a controller, if the controller moves joints or goes off."""
+        """Request the motion module to switch a controller, unless the controller is to be on and moves no joint."""
         found = self._project.controllers.get(track.controller)
         if not track.on or (found and found.output_bindings):
             self._request({"track": track.controller, "on": track.on})

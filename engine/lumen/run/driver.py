@@ -61,7 +61,7 @@ def robot_class(driver: str, root: Path) -> type:
 
 
 def _guarded(kind: type, driver: str) -> type:
-    """Return a subclass whose public methods turn any error of the driver into a RobotError with its line."""
+    """Return a subclass whose public methods turn any error of the driver into a RobotError with its line of code."""
 
     def named(name: str, method: Callable[..., Any]) -> Callable[..., Any]:
         @wraps(method)
@@ -105,13 +105,13 @@ def _imported(driver: str, module: str, root: Path) -> ModuleType:
 
 
 def _module_of(file: Path) -> ModuleType:
-    """Import a file of a project once; the hash of the path keeps files of the same name apart."""
+    """Import a file of a project once; a hash of the path in the module's name keeps files of the same name apart."""
     name = f"lumen_driver_{file.stem}_{sha256(str(file.absolute()).encode()).hexdigest()[:8]}"
     if name in sys.modules:
         return sys.modules[name]
     spec = spec_from_file_location(name, file)
     assert spec
-    assert spec.loader  # always set for a file that ends in .py
+    assert spec.loader  # a file that ends in .py always has a loader
     found = sys.modules[name] = module_from_spec(spec)
     try:
         spec.loader.exec_module(found)
@@ -122,7 +122,7 @@ def _module_of(file: Path) -> ModuleType:
 
 
 def _only_robot(driver: str, module: ModuleType) -> type:
-    """Return the one class of a file with all methods of a robot. Raises RobotError if there are none or several."""
+    """Return the one class in a file with all methods of a robot. Raises RobotError if there is not exactly one."""
     own = [v for v in vars(module).values() if isinstance(v, type) and v.__module__ == module.__name__]
     robots = [kind for kind in own if not isabstract(kind) and not missing_methods(kind, Robot)]
     if len(robots) == 1:
@@ -144,7 +144,7 @@ def _need_methods(driver: str, kind: type) -> None:
 
 
 def _line_of(error: BaseException, kind: type) -> str:
-    """Return the class's own last line in an error's traceback, as ` (FILE:LINE)`, or an empty string."""
+    """Return the last line of the class's module in an error's traceback, as ` (FILE:LINE)`, else an empty string."""
     lines = [
         f"{frame.f_code.co_filename}:{line}"
         for frame, line in walk_tb(error.__traceback__)

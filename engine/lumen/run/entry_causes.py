@@ -8,7 +8,7 @@ from lumen.statechart import Step
 
 
 def innermost(machine: MachineDefinition, names: Iterable[str]) -> list[str]:
-    """Return those of these states that are not the parent of another of them."""
+    """Return the states among these that are not the parent of another of them."""
     listed = list(names)
     states = {state.name: state for state in machine.states.values()}
     parents = {states[name].parent for name in listed if name in states}
@@ -16,7 +16,7 @@ def innermost(machine: MachineDefinition, names: Iterable[str]) -> list[str]:
 
 
 def why(step: Step) -> str:
-    """Return what led to a step's entries: each transition's trigger, and its guard if it has one; at most three."""
+    """Return the causes of a step's entries: each transition's trigger, with its guard; at most three are named."""
     causes = list(dict.fromkeys(_cause(t, step) for t in step.transitions if t.targets))
     if not causes:
         return "at the start" if step.event is None else step.event.name

@@ -29,9 +29,10 @@ from lumen.statechart import Step
 
 
 class Exhibition:
-    """A whole exhibition, held by a program that calls `start` and then `tick` or `run`.
+    """A whole exhibition, held by a program that calls `start`, and then `tick` or `run`.
 
-    It is made from a plan; `services` are its parts, `node` ticks them. Raises BusError if the bus can't be reached.
+    It is made from a plan; `services` are its parts, and `node` ticks them. Raises BusError if the bus can't be
+    reached.
     """
 
     def __init__(self, plan: Plan) -> None:
@@ -51,7 +52,7 @@ class Exhibition:
 
     @property
     def player(self) -> StoryPlayer | None:
-        """The player of its story, None if it has none."""
+        """The player of its story; None if it has no story."""
         visitor = self.services.get(VisitorPart)
         return visitor.player if visitor else None
 
@@ -77,7 +78,7 @@ class Exhibition:
 
     @property
     def reloader(self) -> Reloader | None:
-        """The reloader of saved files, None if saved files are ignored."""
+        """The reloader of saved files; None if saved files are ignored."""
         return self.services.get(Reloader)
 
     @property
@@ -97,7 +98,7 @@ class Exhibition:
 
     @property
     def over(self) -> bool:
-        """Whether its story has ended, or it was interrupted."""
+        """Whether its story has ended, or the run was interrupted."""
         return self.node.over
 
     def start(self) -> None:
@@ -112,7 +113,7 @@ class Exhibition:
         return self.node.tick()
 
     def run(self, seconds: float | None = None) -> float:
-        """Run for `seconds` [s], or until it is over; return how long it ran [s]."""
+        """Run for `seconds` [s], or until it is over (None); return how long it ran [s]."""
         return self.node.run(seconds)
 
     def send(self, route: str, body: Mapping[str, Any]) -> None:
@@ -124,7 +125,7 @@ class Exhibition:
             raise UsageError(f"can't send on `{route}`: {reason}")
 
     def say(self, text: str, language: str = "") -> None:
-        """Make the robot say a text, whatever the behaviour does."""
+        """Make the robot say a text, independently of the behaviour; without a language, in its current one."""
         said = Say(text, language)
         self.robot.robot.start("operator", said)
         self.robot.server.begins(said)
@@ -151,13 +152,14 @@ class Exhibition:
     def why(self, what: str = "", at: str | None = None) -> dict[str, Any]:
         """Return why something happened, as `lumen why --format json` prints it.
 
-        `what` is a text that was said, a state, a motion or the id of a command; without it the last of these is
-        explained. `at` is an ISO 8601 time until which to look. Raises UsageError, with advice, if it did not happen.
+        `what` is a text that was said, a state, a motion or the id of a command; without it the last thing that
+        happened is explained. `at` is an ISO 8601 time: only what happened until then counts. Raises UsageError, with
+        advice, if it did not happen.
         """
         return answer(self.history(), WHY.ask, what, at)
 
     def why_not(self, what: str, at: str | None = None) -> dict[str, Any]:
-        """Return why something did not happen, as `lumen why-not --format json` prints it. Raises as `why` does."""
+        """Return why something did not happen, as `lumen why-not --format json` prints it; raises as `why` does."""
         return answer(self.history(), WHY_NOT.ask, what, at)
 
     def history(self) -> list[RecordedStep]:
@@ -172,14 +174,15 @@ class Exhibition:
         """Reload the files from disk, and return a report.
 
         Its `verdict` is `unchanged`, `applied`, `refused` (see `diagnostics`), or `waiting` while the behaviour is
-        busy: then it is applied at a later tick. Raises UsageError if the exhibition was opened without `reload`.
+        busy: the files are then applied at a later tick. Raises UsageError if the exhibition was opened without
+        `reload`.
         """
         if self.reloader is None:
             raise UsageError('this exhibition was opened with reload="off", so it can\'t reload files')
         return self.reloader.reload(self.now)
 
     def close(self) -> None:
-        """Close its threads, files and windows."""
+        """Close the exhibition with its threads, files and windows."""
         self.node.close()
 
     def __enter__(self) -> Self:

@@ -21,7 +21,7 @@ from lumen.run.visitor import SPEECH_ROUTE
 
 HEAD = "# yaml-language-server: $schema=../../schemas/story.schema.json"
 ROBOT_TIMEOUT = "2min"
-"""Time that the story waits for a robot's command to end."""
+"""The time that the story waits for a robot's command to end."""
 
 
 @dataclass(frozen=True)
@@ -42,20 +42,20 @@ class Explored:
 
     behavior: str
     configurations: int
-    """Number of configurations that were reached."""
+    """The number of configurations that were explored."""
     steps: int
-    """Number of steps that were taken."""
+    """The number of steps that were taken."""
     waiting: int
-    """Number of reached configurations that were not explored, because of the bound."""
+    """The number of reached configurations that were not explored, because of the bound."""
     kept: tuple[str, ...]
-    """Properties that hold in every reached configuration."""
+    """The names of the properties that hold in every reached configuration."""
     findings: tuple[ExploredFinding, ...]
     unseen: tuple[Gap, ...]
-    """States and transitions that were not reached."""
+    """The states and transitions that were not reached."""
     took: float
-    """Duration [s]."""
+    """The duration [s]."""
     known: bool = False
-    """Whether it is the kept result of an earlier exploration."""
+    """Whether it is the stored result of an earlier exploration."""
 
     @property
     def complete(self) -> bool:
@@ -68,7 +68,8 @@ def explored(
 ) -> Explored:
     """Explore a behaviour under every event that the project's routes, its robot and its own file declare.
 
-    `bound` limits the search. `tell` is called with how many configurations were explored, and how many are known.
+    `bound` is the greatest number of configurations to explore, and `home` the state that must stay reachable (empty:
+    the initial one). `tell` is called with the numbers of configurations that were explored and that wait.
     """
     began = time.perf_counter()
     machine = project.behaviors[behavior]
@@ -89,7 +90,7 @@ def explored(
 
 
 def outside(project: Project, machine: MachineDefinition) -> Mapping[str, Any]:
-    """Return the events that reach a behaviour from outside, with the JSON Schemas of their data (None: any)."""
+    """Return the events that reach a behaviour from outside, with the JSON Schemas of their data (None: any data)."""
     routes = {r.event: project.messages.get(r.schema) for r in project.routes.values() if r.event}
     pressed = {button.event: None for state in machine.states.values() for button in state.buttons}
     steady = {**controller_events(project.controllers.values()), **robot_events(), **own_module_events(project.modules)}
@@ -130,7 +131,7 @@ def _steps(project: Project, path: tuple[PathStep, ...]) -> Iterator[str]:
 
 
 def _happens(project: Project, name: str, data: Any) -> str:
-    """Return the story step that raises an event: as spoken words, as a message on its route, or as a bare event."""
+    """Return the story step that raises an event: spoken words, a message on its route, or a bare event."""
     route = next((r.name for r in project.routes.values() if r.event == name), None)
     if route == SPEECH_ROUTE and isinstance(data, Mapping) and isinstance(data.get("result"), str) and data["result"]:
         return f"says: {_flow(data['result'])}"
@@ -140,13 +141,13 @@ def _happens(project: Project, name: str, data: Any) -> str:
 
 
 def _expect(states: tuple[str, ...], before: tuple[str, ...], more: Mapping[str, Any]) -> str:
-    """Return the story step that expects the states that became active."""
+    """Return the story step that expects the states that became active, or all `states` if none did."""
     fresh = [state for state in states if state not in before] or list(states)
     return f"expect: {_flow({'state': fresh[0] if len(fresh) == 1 else fresh, **more})}"
 
 
 def _broken(path: tuple[PathStep, ...]) -> Iterator[tuple[str, str]]:
-    """Yield the verbs that must fail on the way, and those that must hang while a timer ends."""
+    """Yield the verbs that must fail on the way, and those that must hang while a timer ends, each with its fault."""
     for step in path:
         if step.stimulus and step.stimulus.kind is StimulusKind.FAILED:
             yield _verb(step.stimulus.command), "fails"

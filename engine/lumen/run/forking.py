@@ -1,4 +1,4 @@
-"""`{"ask": "fork"}`: what would have happened from some moment on, with another event or with the saved files."""
+"""`{"ask": "fork"}`: the course of the behaviour from some moment on, with another event or with the saved files."""
 
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
@@ -23,13 +23,13 @@ from lumen.run.replaying.journals import KeptBundles
 from lumen.run.replaying.other_files import takes
 
 PATIENCE = 3.0
-"""Longest time for an answer [s]."""
+"""The longest time to make an answer [s]."""
 MAX_NAME = 100
-"""Longest name of an event, in characters."""
+"""The greatest length of an event's name [characters]."""
 
 
 def forked(journal: JournalWriter, running: Project, body: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the answer: `was` and `would`, each a list of journal entries, or a refusal with its reason."""
+    """Return the answer: the lists of journal entries `was` and `would`, or a refusal with its reason."""
     try:
         return _forked(journal, running, body)
     except LumenError as error:
@@ -64,7 +64,10 @@ def _event(said: Any) -> Event | None:
 
 
 def _saved(running: Project) -> Project:
-    """Return the project as it is saved, with the settings that can't change during a run. Raises ProjectError."""
+    """Return the project as it is saved, with the running values of settings that can't change during a run.
+
+    Raises ProjectError if the saved files have errors.
+    """
     root = Path(running.root)
     project, diagnostics = check_files(root, read_files(root))
     if project is None:
@@ -73,7 +76,10 @@ def _saved(running: Project) -> Project:
 
 
 def _entries(journal: JournalWriter, body: Mapping[str, Any]) -> tuple[Sequence[RecordedEntry], int]:
-    """Return the entries around the fork, and the position of the first entry that may differ."""
+    """Return the entries around the fork, and the position of the first entry that may differ.
+
+    Raises UsageError if the request has no valid `position` or `at`, or the journal lacks that time.
+    """
     position, at = body.get("position"), body.get("at")
     if type(position) is not int and not isinstance(at, str):
         raise UsageError("add `position`, the position of an entry, or `at`, a time such as 2026-11-22T14:03:00Z")
@@ -99,7 +105,7 @@ def _remembered(journal: JournalWriter) -> list[RecordedEntry]:
 
 
 def _knows(entries: Sequence[RecordedEntry], position: int) -> bool:
-    """Return whether the entries have a snapshot at or before that position."""
+    """Return whether the entries have a snapshot at or before that position, from which a replay can begin."""
     return any(
         isinstance(one, JournalJump) and one.snapshot is not None and one.position <= position for one in entries
     )
@@ -123,6 +129,6 @@ def _read(file: Path) -> Sequence[RecordedEntry]:
 
 
 def _after(entries: Sequence[RecordedEntry], moment: float) -> int | None:
-    """Return the position of the first entry at or after a moment [s since 1970], or None."""
+    """Return the position of the first entry at or after a moment [s since 1970], else None."""
     clock = JournalClock()
     return next((entry.position for entry in entries if clock.of(entry) >= moment), None)

@@ -14,9 +14,9 @@ from lumen.upkeep.garbage import GcScheduler
 class House:
     """Exhibitions by the names of their robots; each has its own time, keys, journal, files and stop.
 
-    They are ticked in the order given, and are in step if their worlds share a clock. One that is over is closed, and
-    the others continue. The same happens if an error ends one: `lost` is then called with its name and the error. With
-    `together` the house is over as soon as one of them is, as at the end of a story.
+    They are ticked in the order given, and stay in step if their worlds share a clock. One that is over is closed, and
+    the others continue. The same happens if an error ends one; `lost` is then called with its robot's name and the
+    error. With `together` the house is over as soon as one of them is, as at the end of a story.
     """
 
     def __init__(
@@ -51,7 +51,7 @@ class House:
         start(self._exhibitions)
 
     def tick(self) -> float:
-        """Tick each robot once; return the time [s] of the first that is still running."""
+        """Tick each robot once; return the time [s] of the first one that still runs."""
         for name, node in list(self._going.items()):
             try:
                 now = node.tick()
@@ -66,7 +66,7 @@ class House:
         return self.now
 
     def run(self, seconds: float | None = None) -> float:
-        """Run for `seconds` [s], or until it is over; return how long it ran [s]."""
+        """Run for `seconds` [s], or until it is over (None); return how long it ran [s]."""
         with closing(GcScheduler()) as garbage:
             return live(self, seconds, garbage)
 
@@ -76,7 +76,7 @@ class House:
             self._end(name)
 
     def nap(self, most: float = inf) -> None:
-        """Sleep on the first robot's clock for at most `most` [s], until something is due or arrives in any."""
+        """Sleep on the first robot's clock for at most `most` [s], until something is due or arrives for any robot."""
         going = list(self._going.values())
         with ExitStack() as stack:
             for node in going:
@@ -86,7 +86,7 @@ class House:
                 node.pass_over(ticks)
 
     def _end(self, name: str) -> None:
-        """Close a robot's exhibition and remove it; report an error in that as a loss."""
+        """Close a robot's exhibition and remove it; an error while closing counts as a loss."""
         try:
             self._going[name].close()
         except LumenError as error:

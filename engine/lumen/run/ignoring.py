@@ -17,22 +17,22 @@ _ENDS = {
     for kind, key in (("done", "onDone"), ("error", "onError"))
     for what in ("do", "state", "invoke")
 }
-"""The keys for the ends of actions, states and invocations in the file, by the beginnings of their events' names."""
+"""The keys in the file for the ends of actions, states and invocations, by the prefixes of the events' names."""
 
 BURST = 1.0
-"""Time within which another event with the same name and texts is not reported [s]."""
+"""The time within which another event with the same name and texts is not reported [s]."""
 MAX_GUARDS = 3
-"""False guards that a line shows."""
+"""The number of false guards that a line shows."""
 MAX_VALUE = 40
-"""Characters of a value that a line shows."""
+"""The number of characters of a value that a line shows."""
 MAX_REMEMBERED = 1_000
-"""Events that are remembered for bursts; then all are forgotten."""
+"""The number of events that are remembered to recognize bursts; at that number all are forgotten."""
 
 
 class IgnoredEvents:
     """The reports on steps whose event changed nothing.
 
-    A face is seen many times a second, and few states use it, so an event soon after one of its kind is not reported.
+    A face is seen many times a second, and few states use it, so an event is not reported soon after a similar one.
     """
 
     def __init__(self) -> None:

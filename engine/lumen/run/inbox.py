@@ -1,4 +1,4 @@
-"""From messages to events: messages from any thread wait here, with their senders, for the next tick."""
+"""Messages become events: messages from any thread wait here, with their senders, for the next tick."""
 
 import logging
 from collections import deque
@@ -14,7 +14,7 @@ from lumen.ports import Bus, Message
 from lumen.upkeep.drops import DropLog
 
 MAX_WAITING_EVENTS = 10_000
-"""Events that may wait; one more drops the oldest."""
+"""The number of events that may wait; one more drops the oldest."""
 
 _log = logging.getLogger(__name__)
 
@@ -48,7 +48,7 @@ class Inbox:
         return len(self._waiting)
 
     def hear_robots(self, project: Project) -> None:
-        """Subscribe to events from other robots of the house, if the project has any; else unsubscribe."""
+        """Subscribe to events from other robots if the project has any, else unsubscribe."""
         self._known = {t.event for state in project.machine.states.values() for t in state.transitions if t.event} - {
             SHARED_EVENT
         }
@@ -61,7 +61,7 @@ class Inbox:
             self._told = None
 
     def _hear_robot(self, message: Message) -> None:
-        """Queue an event from a robot of the house if the behaviour waits for exactly that name; else log it.
+        """Queue an event from a robot of the house if the behaviour waits for exactly that name; log any other message.
 
         The exact name is required so that another robot can't fake an answer.
         """
@@ -96,7 +96,7 @@ class Inbox:
 
 
 MAX_WAITING_MESSAGES = 1000
-"""Messages that may wait; one more drops the oldest."""
+"""The number of messages that may wait; one more drops the oldest."""
 
 
 class RouteInbox:
@@ -108,7 +108,7 @@ class RouteInbox:
         self._undo: dict[tuple[str, str], Callable[[], None]] = {}
 
     def listen(self, project: Project, names: Iterable[str]) -> None:
-        """Subscribe to those of the named routes that the project has, and to no others."""
+        """Subscribe to the named routes that the project has, and cancel all other subscriptions."""
         routes = {name: route for name in names if (route := project.routes.get(name))}
         wanted = {(route.key_for(project.robot), name) for name, route in routes.items()}
         for key, name in sorted(wanted - self._undo.keys()):

@@ -22,15 +22,15 @@ from lumen.run.reaching import reach_exhibition
 from lumen.upkeep.arguments import need_text
 
 REACH_TIMEOUT = 30.0
-"""Longest wait until the bus of an exhibition can be reached [s]."""
+"""The longest wait until the bus of an exhibition can be reached [s]."""
 REACH_PAUSE = 0.2
-"""Pause between two attempts [s]."""
+"""The pause between two attempts [s]."""
 
 
 class JoinedModule:
     """A program that takes part in an exhibition under a name; `join` makes it.
 
-    `bus` is the exhibition's bus, `robot` the name of its robot. Use it in a `with` statement, or call `close`.
+    `bus` is the exhibition's bus, and `robot` the name of its robot. Use it in a `with` statement, or call `close`.
     """
 
     def __init__(self, name: str, robot: str, bus: Bus, project: Path | None) -> None:
@@ -48,7 +48,7 @@ class JoinedModule:
         return row.key_for(self.robot) if row else default_key(route, self.robot)
 
     def publish(self, route: str, body: Any) -> None:
-        """Send a body on a route. Raises BusError if the bus is gone or refuses it."""
+        """Send a body on a route. Raises BusError if the bus is gone or refuses the body."""
         self.bus.publish(self.key(route), body)
 
     def subscribe(self, route: str, handler: MessageHandler) -> None:
@@ -62,9 +62,9 @@ class JoinedModule:
             self._say(HERE)
 
     def wait(self, seconds: float) -> bool:
-        """Wait for `seconds` [s] and send signs of life.
+        """Wait for `seconds` [s], sending signs of life; return True after that time.
 
-        Return False as soon as the exhibition ends this program, or its bus is gone.
+        Return False as soon as the exhibition ends this program, or the bus is gone.
         """
         until = time.monotonic() + seconds
         while not self._ending.is_set():
@@ -79,7 +79,7 @@ class JoinedModule:
         return False
 
     def close(self) -> None:
-        """Announce that the program leaves, and disconnect; harmless when repeated."""
+        """Announce that the program leaves, and disconnect; calling it again does no harm."""
         self._ending.set()
         with suppress(BusError):
             self._say(LEAVES)
@@ -109,8 +109,8 @@ class JoinedModule:
 def join(name: str = "", *, robot: str = "", bus: str = "", project: str = "") -> JoinedModule:
     """Join a running exhibition as the module `name` of lumen.yaml.
 
-    A program that `lumen run` starts needs no arguments. One that runs elsewhere passes its name, the name of the
-    robot, and the address of the bus, or for an exhibition on the same machine the folder of the project. Raises
+    A program that `lumen run` starts needs no arguments. A program elsewhere passes its name, the name of the robot,
+    and the address of the bus; on the exhibition's machine the project's folder can replace the address. Raises
     UsageError if the name is missing, BusError if the bus can't be reached within 30 s.
     """
     name = name or os.environ.get(MODULE_VARIABLE, "")

@@ -13,21 +13,21 @@ from lumen.journal.journal_folder import PositionedLine, headers
 from lumen.journal.journal_writer import JournalWriter
 
 MAX_ENTRIES = 500
-"""Entries on one page."""
+"""The greatest number of entries on one page."""
 MAX_PAGE_BYTES = 500_000
-"""Size of a page's lines [bytes]; a longer line gets a page of its own."""
+"""The greatest size of a page's lines [bytes]; a longer line gets a page of its own."""
 PATIENCE = 5.0
-"""Longest wait until a new journal knows its first position [s]."""
+"""The longest wait until a new journal knows its first position [s]."""
 
 
 def journal_page(writer: JournalWriter, position: int, most: int = MAX_ENTRIES) -> dict[str, Any]:
-    """Return up to `most` entries from `position` on, of the journal that is being written.
+    """Return up to `most` entries, from `position` on, of the journal that is being written.
 
     `entries` are the JSON data of each entry, with its `position`: the newest from memory, older ones from the files.
-    Those no longer kept are left out, so the first position may be a later one. `next` is the position of the next
-    page. `run` identifies the current run: after a power cut, another run may reuse the positions of lost entries, so
-    `next` never exceeds the next position to be written. `epoch` is the date of the exhibition's time 0 before the
-    first entry [s since 1970], None if unknown; the entries' times count from there.
+    Entries that are no longer kept are left out, so the first position may be a later one. `next` is the position of
+    the next page. `run` identifies the current run: after a power cut, another run may reuse the positions of lost
+    entries, so `next` never exceeds the next position to be written. `epoch` is the date of the exhibition's time 0
+    before the first entry [s since 1970], None if unknown; the entries' times count from there.
     """
     if not writer.begun.wait(PATIENCE):
         return {"entries": [], "next": position, "run": writer.run, "epoch": None}
@@ -64,7 +64,7 @@ def _kept(folder: Path, position: int, most: int) -> tuple[list[bytes], list[Pos
 
 
 def _epoch_after(lines: Sequence[bytes]) -> float | None:
-    """Return the date of time 0 after these entries [s since 1970]: the last recorded one, or None."""
+    """Return the date of time 0 that these entries recorded last [s since 1970], else None."""
     clock = JournalClock()
     for line in reversed(lines):
         if b'"epoch"' in line:

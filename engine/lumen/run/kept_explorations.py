@@ -1,4 +1,4 @@
-"""Results of explorations, kept under `.lumen/explored/` by everything they depend on, to avoid repetitions."""
+"""Results of explorations, stored under `.lumen/explored/` by everything on which they depend, to avoid repetitions."""
 
 import json
 from collections.abc import Mapping
@@ -16,18 +16,18 @@ from lumen.upkeep.own_folders import private_folder
 
 FOLDER = "explored"
 MAX_KEPT = 20
-"""Explorations that are kept of a project; more replace the oldest."""
+"""The number of explorations that are stored of a project; more replace the oldest."""
 
 
 class KeptExplorations:
-    """The kept explorations of a project. A folder or file that can't be used counts as empty."""
+    """The stored explorations of a project. A folder or file that can't be used counts as empty."""
 
     def __init__(self, project: Project) -> None:
         self._home = Home(home_of(Path(project.root)) / FOLDER)
         self._content = [project.hash, repr(project.body.name), list(project.languages), engine()]
 
     def recall(self, behavior: str, bound: int, home: str) -> Explored | None:
-        """Return the earlier result for the same files, software and options, or None."""
+        """Return the earlier result for the same files, software and options, else None."""
         try:
             return _from_json(self._home.read_json(self._name(behavior, bound, home)))
         except (KeyError, TypeError, ValueError, AttributeError):

@@ -65,7 +65,7 @@ def _known(name: str) -> bool:
 
 
 class Forgetter(Protocol):
-    """Something that may hold a person's name."""
+    """An object that may hold a person's name."""
 
     def forget(self, person: PersonName) -> None:
         """Delete everything that may contain the name."""
@@ -77,7 +77,7 @@ class LiveBehavior:
 
     A story sets the behaviour, the language, the time of day and the context at the start. `adopt` switches everything
     around the loop to another bundle, and may raise BusError. With `published` each step is sent to the bus. `refuse`
-    returns why the robot may not begin a command, empty if it may.
+    returns why the robot may not begin a command; empty if it may.
     """
 
     def __init__(
@@ -106,7 +106,7 @@ class LiveBehavior:
         )
         self._adopt = adopt
         self.forgetters: list[Forgetter] = []
-        """Called to forget a person together with the behaviour."""
+        """Objects that forget a person together with the behaviour."""
         if published:
             self.loop.observers.append(self.trace)
 
@@ -143,7 +143,7 @@ class LiveBehavior:
     def apply(self, project: Project, plan: MigrationPlan, begun: Callable[[], None] = lambda: None) -> None:
         """Switch to another bundle as planned for this moment, and perform the plan's commands.
 
-        `begun` is called between the switch and the commands. Raises what `switch` raises.
+        `begun` is called between the switch and the commands. Raises the errors of `switch`.
         """
         old = self.project
         self.switch(project, plan)
@@ -166,5 +166,5 @@ class LiveBehavior:
             self.trace.migrated(plan)
 
     def _timezone(self) -> str:
-        """Return the project's time zone, else this machine's; for a story, which must run the same everywhere, UTC."""
+        """Return the project's time zone, else this machine's; for a story UTC, so that it runs the same everywhere."""
         return self.project.timezone or ("" if self._story else self._local_timezone)

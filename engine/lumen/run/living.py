@@ -8,11 +8,11 @@ from typing import Protocol
 from lumen.run.watcher import SWITCH_INTERVAL
 
 ROUNDING = 1e-6
-"""Tolerance for the rounding error in the sum of many ticks [s]."""
+"""The tolerance for the rounding error in the sum of many ticks [s]."""
 
 
 class Living(Protocol):
-    """One robot of this process, or all of them."""
+    """One robot of this process, or all its robots."""
 
     @property
     def now(self) -> float:
@@ -36,7 +36,7 @@ class Living(Protocol):
 def live(one: Living, period: float | None, tidy: Callable[[], None]) -> float:
     """Tick until `one` is over or `period` [s] has passed (None: no limit); return how long it ran [s].
 
-    `tidy` is called after each tick, when the most time is left until the next.
+    `tidy` is called after each tick, when the most time is left until the next one.
     """
     began, usual = one.now, sys.getswitchinterval()
     sys.setswitchinterval(SWITCH_INTERVAL)

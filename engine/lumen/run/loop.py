@@ -1,4 +1,4 @@
-"""The loop of a running behaviour: what happens in which order, fifty times a second."""
+"""The loop of a running behaviour, fifty times a second."""
 
 from collections.abc import Callable, Mapping, Sequence
 from datetime import date
@@ -33,13 +33,13 @@ from lumen.statechart import Snapshot, Step, due
 from lumen.statechart.offers import offers
 
 REMIND_PERIOD = 5.0
-"""Time after which the robot is sent its style again [s], in case it was restarted and lost it."""
+"""The time after which the robot is sent its style again [s], in case it was restarted and lost the style."""
 
 _STILL = Live(STILL_STYLE)
 
 
 class LifeDirector:
-    """A director of the robot's life: it sends the style of the active states.
+    """Sends the robot the style of life of the active states.
 
     It has no influence on the steps, so journals do not contain it.
     """
@@ -71,11 +71,11 @@ def _wanted(project: Project, snapshot: Snapshot) -> Live:
 
 _BY_PEOPLE = ("stop", "resume")
 _FROM_THE_START = ("lost.command.", "brain.lost")
-"""Events that the behaviour gets if it was away and resumes."""
+"""Events that a behaviour receives when it resumes after the engine was away."""
 
 
 def caused(event: Event) -> Event:
-    """Return the event with its cause, which is left unchanged if it already has one."""
+    """Return the event with a cause; an event that has one is returned unchanged."""
     return event if event.cause else event._replace(cause=_cause(event))
 
 
@@ -92,12 +92,12 @@ def _cause(event: Event) -> Cause:
 
 
 TICK_PERIOD = 0.02
-"""Time between two ticks [s]."""
+"""The time between two ticks [s]."""
 BRAIN_LOST_AFTER = 5.0
-"""Gap between ticks from which the behaviour gets `brain.lost` [s]."""
+"""The gap between ticks from which the behaviour receives `brain.lost` [s]."""
 NOTHING_WAITS = "nothing is waiting for approval"
 CAUSES = ("stop", "brain.lost", "robot.lost")
-"""Events that the behaviour gets before the failures that they cause: a stop cancels the robot's commands."""
+"""Events that the behaviour receives before the failures that they cause: a stop cancels the robot's commands."""
 
 
 class Observer:
@@ -110,30 +110,32 @@ class Observer:
         """Called before a command is performed."""
 
     def refused(self, command: Start, reason: str) -> None:
-        """Called if a command of the behaviour is not performed because a person keeps the robot still."""
+        """Called if the robot refuses a command of the behaviour, because a person keeps it still."""
 
     def answered(self, event: Event) -> None:
-        """Called when the robot answered a command or noticed something, before the behaviour gets the event."""
+        """Called when the robot answered a command or noticed something, before the behaviour receives the event."""
 
     def troubled(self, trouble: RunTrouble) -> None:
-        """Called when a trouble occurs: the run no longer counts as successful."""
+        """Called when a trouble occurs, after which the run no longer counts as successful."""
 
 
 class Rescuer(Protocol):
     """A handler of faults that may switch to another bundle."""
 
     def rescue(self, error: Exception) -> Sequence[Command] | None:
-        """Switch to another bundle, and return the commands for that; with None the fault ends the run."""
+        """Switch to another bundle and return the commands of the switch; if all rescuers return None, the fault ends
+        the run.
+        """
         ...
 
 
 class BehaviorLoop:
     """A project on a robot, a bus and a clock.
 
-    At each tick the clock waits, tracking runs, what happened becomes events, the behaviour steps, its commands are
-    performed, and `observers` are called. If a tick fails because of the bundle or an internal error, one of the
-    `rescuers` may switch to another bundle. `tracking` lets controllers follow sightings; without it this is done here.
-    `refuse` returns why the robot may not begin a command, empty if it may.
+    At each tick the clock waits, tracking runs, inputs become events, the behaviour steps, its commands are performed,
+    and `observers` are called. If a tick fails because of the bundle or an internal error, one of the `rescuers` may
+    switch to another bundle. `tracking` lets controllers follow sightings; if it is None, the loop does so itself.
+    `refuse` returns why the robot may not begin a command; empty if it may.
     """
 
     def __init__(
@@ -149,7 +151,7 @@ class BehaviorLoop:
         self.observers: list[Observer] = []
         self.rescuers: list[Rescuer] = []
         self.wall_clock: WallClockWatch | None = None
-        """Detects changes of the time of day, None if that is not wanted."""
+        """Detects changes of the time of day; None if they are ignored."""
         self.runtime = Runtime(project, self._stepped, self._rescued, self._dropped)
         self.inbox, self.board = Inbox(bus), SharedBoard(bus)
         self.tracking: TrackingService = tracking or LocalTracking(project, robot, bus)
@@ -161,11 +163,11 @@ class BehaviorLoop:
         self._events: list[Event] = []
         self._last = clock.now()
         self.patience = BRAIN_LOST_AFTER
-        """Gap between ticks on the clock from which the behaviour gets `brain.lost` [s]."""
+        """The gap between ticks on the clock from which the behaviour receives `brain.lost` [s]."""
         self.rests = False
         """Whether the behaviour has made the robot rest."""
         self.step = 0
-        """Number of the step whose commands are being performed (`Runtime.steps`)."""
+        """The number of the step whose commands are being performed (`Runtime.steps`)."""
         self._lost_at = -inf
 
     @property
@@ -204,7 +206,7 @@ class BehaviorLoop:
         self._events.append(event)
 
     def approve(self, by: str, *, go: bool) -> str:
-        """Let the event that has waited longest go or stay; return why that can't be done, or an empty string."""
+        """Let the event that has waited longest go or stay; return why that is impossible, or an empty string."""
         return "" if self.runtime.approvals.decide("", by, go=go) else NOTHING_WAITS
 
     def set_autonomy(self, level: Autonomy, by: str) -> None:
@@ -212,7 +214,7 @@ class BehaviorLoop:
         self.runtime.approvals.set(level, by)
 
     def press(self, label: str, by: str) -> str:
-        """Raise the event of a button at the next tick; return why that can't be done, or an empty string."""
+        """Raise the event of a button at the next tick; return why that is impossible, or an empty string."""
         found = pressed(self.project.machine, self.runtime.snapshot, label, self.clock.now(), by)
         if isinstance(found, str):
             return found
@@ -220,7 +222,9 @@ class BehaviorLoop:
         return ""
 
     def tick(self, now: float | None = None) -> float:
-        """Run one tick at `now` [s], by default one period after the last; return its time [s]."""
+        """Run one tick at `now` [s]; if it is None, wait until one period after the last tick. Return the tick's time
+        [s].
+        """
         if now is None:
             self.clock.wait(self._last + TICK_PERIOD)
             now = self.clock.now()
@@ -240,7 +244,7 @@ class BehaviorLoop:
 
     @property
     def waiting(self) -> int:
-        """Number of events that wait for the next tick."""
+        """The number of events that wait for the next tick."""
         return len(self._events) + len(self.performer.events) + len(self.inbox)
 
     def take(self, step: Step) -> None:
@@ -248,7 +252,7 @@ class BehaviorLoop:
         self._perform(self.runtime.take(step), self._last)
 
     def quiet_until(self, now: float) -> float:
-        """Return until when nothing happens without an input from outside [s]; `now` if that is unknown."""
+        """Return until when nothing happens without an input from outside [s]; `now` if something may happen now."""
         pending = self._events or self.performer.events or not (self.inbox.empty and self.performer.questions.empty)
         pending = pending or not self.board.empty
         if pending or self.tracking.on or self.performer.navigator.busy:
@@ -395,7 +399,9 @@ class BehaviorLoop:
                 self.rests = False
 
     def _recover(self, error: Exception, now: float) -> None:
-        """Let a rescuer switch the bundle after a fault, and perform its commands; raise the fault if none does."""
+        """Let a rescuer switch the bundle after a fault, and perform its commands; raise the fault if none of them
+        does.
+        """
         commands = self._rescued(error)
         if commands is None:
             raise error
@@ -405,8 +411,8 @@ class BehaviorLoop:
 def _ours(event: Event) -> bool:
     """Return whether an event is for the behaviour.
 
-    Of the answers, those to its own commands are (c1, d2@quiz, …). Cues of a motion are for the loop, and recordings
-    for modules.
+    Of the answers, only those to its own commands are (c1, d2@quiz, …). Cues of a motion are for the loop, and
+    recordings for modules.
     """
     if event.name in (CUE, RECORDED):
         return False

@@ -19,14 +19,14 @@ PLAYERS = (("aplay", "-q"), ("paplay",), ("afplay",), ("pw-play",))
 
 
 def player_here() -> tuple[str, ...] | None:
-    """Return the command that plays sounds on this machine, or None."""
+    """Return the command that plays sounds on this machine, else None."""
     return next((player for player in PLAYERS if shutil.which(player[0])), None)
 
 
 class Loudspeaker:
     """A player of the sound files of the project in `root`; a missing player is reported once.
 
-    Sounds are also added to `track`, if there is one. With `audible=False` nothing is played here, for films and for
+    Sounds are also added to `track`, if there is one. With `audible=False` nothing is played here, as in films and in
     runs faster than real time. `close` ends the sounds that still play.
     """
 
@@ -37,7 +37,10 @@ class Loudspeaker:
         self._playing: list[subprocess.Popen[bytes]] = []
 
     def play(self, sound: PlaySound, volume: float, now: float) -> Callable[[float], None]:
-        """Start a sound at `now` [s], recorded at `volume`; return a function that ends it at a later time [s]."""
+        """Start a sound at `now` [s]; return a function that ends it at a later time [s].
+
+        `volume`, from 0 to 1, applies only to the track.
+        """
         file = on_disk(self._root, sound.file)
         playing, cut = self._heard(file), None
         if self._track is not None and (found := _mono(file, sound.length)):

@@ -19,13 +19,13 @@ from lumen.upkeep.drops import DropLog
 from lumen.upkeep.threads import WatchedThread
 
 MAX_WAITING_MESSAGES = 1_000
-"""Messages that wait for a module; one more drops the oldest."""
+"""The number of messages that wait for a module; one more drops the oldest."""
 MAX_REASONS = 50
-"""Different troubles that are reported until the module works again."""
+"""The number of different troubles that are reported until the module works again."""
 KEEP_DAYS = 30.0
-"""Time for which a module keeps data about people by default [days]."""
+"""The default time for which a module keeps data about people [days]."""
 DAY = 86_400.0
-"""Seconds in a day [s]."""
+"""The length of a day [s]."""
 
 _log = logging.getLogger(__name__)
 
@@ -35,7 +35,7 @@ class Module:
 
     If a handler raises ModuleError, its message is lost. Each reason is then reported once until the module works
     again: to `tell`, and on the route `trouble` for operators of other processes. Of a route that keeps one message,
-    only the newest waits. Subclasses set `name`, override `hears`, and call `begin` when they are ready.
+    only the newest waits. Subclasses set `name` and override `hears`; call `begin` to start the module.
     """
 
     name = ""
@@ -45,7 +45,7 @@ class Module:
     ) -> None:
         self.project, self.bus, self.clock = project, bus, clock
         self.handled = 0
-        """Number of messages handled so far."""
+        """The number of messages handled so far."""
         self.came = 0.0
         """When the message being handled arrived, by `clock` [s]."""
         self._tell = tell
@@ -59,7 +59,7 @@ class Module:
 
     @classmethod
     def make(cls, project: Project, bus: Bus, tell: Callable[[str], None], folder: Path | None) -> Self:
-        """Return a module for an exhibition, not yet begun; `folder` is for its files, None if nothing may last.
+        """Return a module for an exhibition, not yet begun; `folder` is for its files, None if nothing may be saved.
 
         Raises ModuleError if it lacks something that it needs.
         """
@@ -71,7 +71,7 @@ class Module:
 
     @property
     def refused(self) -> int:
-        """Number of messages that it refused, if it counts them."""
+        """The number of messages that it refused; 0 in modules that do not count them."""
         return 0
 
     @property
@@ -93,12 +93,12 @@ class Module:
             undo()
 
     def settle(self, timeout: float = 5.0) -> bool:
-        """Wait until everything that has arrived is handled; return False if `timeout` [s] passed before."""
+        """Wait until everything that has arrived is handled; return False if `timeout` [s] passes first."""
         with self._changed:
             return self._changed.wait_for(lambda: not (self._waiting or self._busy), timeout)
 
     def close(self) -> None:
-        """Handle what waits, and end the thread; harmless when repeated."""
+        """Handle the waiting messages, and end the thread; calling it again does no harm."""
         for undo in self._undo:
             undo()
         self._undo = []
@@ -128,7 +128,7 @@ class Module:
         return row.key_for(self.project.robot) if row else default_key(route, self.project.robot)
 
     def tell(self, text: str) -> None:
-        """Report a line to the operator, but not again until `well` is called."""
+        """Report a line to the operator, once until `well` is called."""
         if text not in self._told and len(self._told) < MAX_REASONS:
             self._told.add(text)
             self._tell(text)
@@ -138,7 +138,7 @@ class Module:
                 _log.debug("an error of the module could not be published: %s", error)
 
     def well(self) -> None:
-        """Note that it works again, so that the same troubles are reported again."""
+        """Record that the module works again, so that the same troubles are reported again."""
         self._told.clear()
 
     def _listen(self) -> None:
@@ -176,9 +176,9 @@ class Module:
         """Close the resources of its thread; called on that thread."""
 
     def idle(self) -> float | None:
-        """Do idle work; called on its thread when no message waits.
+        """Do idle work; called on the module's thread when no message waits.
 
-        Return after how many seconds to call it again, None for not before a message.
+        Return the time until the next call [s]; None to wait for a message.
         """
         return None
 

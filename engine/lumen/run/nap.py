@@ -14,9 +14,9 @@ class Nap:
 
     @contextmanager
     def on(self, clock: Dozes | None) -> Iterator[None]:
-        """Enable naps on a clock, if it can doze.
+        """Enable naps on a clock; None, for a clock that can't doze, disables them.
 
-        Enter this before you check what is due: a message that arrives later ends the nap.
+        Enter this before you check what is due, so that a message that arrives later ends the nap.
         """
         self._clock = clock
         try:
@@ -25,6 +25,6 @@ class Nap:
             self._clock = None
 
     def end(self) -> None:
-        """End the nap, if there is one."""
+        """End the nap, if one is enabled."""
         if clock := self._clock:
             clock.hurry()

@@ -31,7 +31,7 @@ from lumen.statechart import Step, finished
 from lumen.statechart.nesting import flattened_steps
 
 MAX_TROUBLES = 100
-"""Troubles of a run that are kept for its end; later ones are dropped."""
+"""The number of troubles of a run that are kept for its end; later ones are dropped."""
 
 
 class VisitorWatcher(Protocol):
@@ -57,13 +57,13 @@ class Narrator(Observer):
         self._running: dict[str, str] = {}
         self.states: set[str] = set()
         self.said = 0
-        """Number of texts said."""
+        """The number of texts said."""
         self.played: dict[str, int] = {}
-        """Number of finished performances by motion."""
+        """The number of finished performances of each motion."""
         self._ignored = IgnoredEvents()
         self.troubles: list[str] = []
         self.watchers: list[VisitorWatcher] = []
-        """Called for each action of the visitor."""
+        """Notified of each action of the visitor."""
 
     def line(self, who: str, text: str) -> None:
         """Show a line about `who`, at the present time."""
@@ -144,7 +144,9 @@ class Narrator(Observer):
             self.line("robot", f"notices {event.name}" + (f": {details}" if details else ""))
 
     def troubled(self, trouble: RunTrouble) -> None:
-        """Keep a trouble for the end of the run; only a missed joint goal needs a line here, others already had one."""
+        """Keep a trouble for the end of the run; only a missed joint goal needs a line here, because others already had
+        one.
+        """
         if trouble.kind == "joint":
             self.line("trouble", trouble.what)
         if len(self.troubles) < MAX_TROUBLES:

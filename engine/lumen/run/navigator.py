@@ -12,13 +12,13 @@ from lumen.motion.wayfinding import distance_to, most_legs, next_leg, place_at
 from lumen.ports import Joints, Robot, RobotCommand, Sense, Whereabouts
 
 POSITION_PATIENCE = 2.0
-"""Time without a reported position after which a walk to a place fails [s]."""
+"""The time without a reported position after which a walk to a place fails [s]."""
 
 FRESH_READINGS = 2
-"""Readings after a walk's end that are skipped: they may have been measured before it ended."""
+"""The number of readings after a walk's end that are skipped, because they may have been measured before it ended."""
 
 LOOK_PERIOD = 0.1
-"""Time between two checks of the robot's place while it is not on a way [s]."""
+"""The time between two checks of the robot's place while it does not walk to one [s]."""
 
 LEG_SEPARATOR = "~"
 """Separates the id of a walk to a place from the number of one of its walks: `d3~1`."""
@@ -33,26 +33,26 @@ class _Way:
     since: float
     """When its last walk ended, or it became the first in the queue [s]."""
     target: HallPlace | None = None
-    """The place as its walks are planned, None before the first and after the place moved."""
+    """The place as its walks are planned; None before the first walk and after the place was moved."""
     leg: str = ""
-    """Id of the robot's current walk, empty between two walks."""
+    """The id of the robot's current walk; empty between two walks."""
     walked: int = 0
-    """Walks begun so far."""
+    """The number of walks begun so far."""
     left: int = 0
-    """Walks that may still follow."""
+    """The number of walks that may still follow."""
     cancelled: bool = False
     """Whether it was cancelled, and ends with its current walk."""
     seen: float | None = None
-    """Time of the last reading [s]."""
+    """The time of the last reading [s]; None before any."""
     fresh: int = 0
-    """Readings since the last walk."""
+    """The number of readings since the last walk."""
 
 
 class Navigator:
     """A guide of the robot to places; it also reports the robot's place, by `arrived`, `left` and `doubtful`.
 
-    `begin` starts a walk of the robot, which is answered like any command. If a place is moved during the walk, the
-    robot walks to its new position; if it is removed, the walk fails.
+    `begin` starts a walk of the robot under an id at a time [s], and is answered like any command. If a place is moved
+    during the walk, the robot walks to its new position; if it is removed, the walk fails.
     """
 
     def __init__(self, robot: Robot, begin: Callable[[str, RobotCommand, float], None]) -> None:
@@ -67,7 +67,7 @@ class Navigator:
         self._ways.append(_Way(id, name, now))
 
     def cancel(self, id: str) -> bool:
-        """Cancel the walk to a place with an id; return False without such a walk."""
+        """Cancel the walk to a place with an id; return False if no walk has it."""
         meant = [way for way in self._ways if way.id == id]
         for way in meant:
             way.cancelled = True
@@ -116,11 +116,11 @@ class Navigator:
         return next((way for way in self._ways if separator and way.leg and way.leg == id), None)
 
     def _answered(self, way: _Way, event: Event, now: float) -> Iterator[Event]:
-        """Handle the end of a single walk, and yield the answer of the whole way if it ends with it."""
+        """Handle the end of a single walk, and yield the answer of the whole way if that ends too."""
         way.leg, way.since, way.fresh = "", now, 0
         kind = event.name.partition(".")[0]
         if kind == "cancelled" and way.target is None and not way.cancelled:
-            return  # it was cancelled because the place has moved: the next walk is planned anew
+            return  # cancelled because the place has moved: the next walk is planned anew
         if kind != "done":
             yield from self._end(way, event._replace(name=f"{kind}.command.{way.id}"))
 
@@ -155,7 +155,7 @@ class Navigator:
             yield from self._end(way, Event(f"done.command.{way.id}", None, now))
 
     def _fresh(self, way: _Way) -> Whereabouts | None:
-        """Return where the last walk led, None until enough readings have arrived."""
+        """Return the robot's position after the last walk; None until enough readings have arrived."""
         reading = self._robot.read(Sense.JOINT)
         if not isinstance(reading, Joints) or reading.position is None:
             return None
@@ -175,7 +175,7 @@ class Navigator:
     def _look_around(self, project: Project, standing: str, now: float) -> Iterator[Event]:
         """Yield an event if the robot is at another place than the behaviour believes.
 
-        Places that it passes on a way to another do not count.
+        Places that it passes on the way to another place do not count.
         """
         if now < self._look:
             return
@@ -195,7 +195,7 @@ class Navigator:
             yield self._event(ARRIVED if found else LEFT, found or standing, here, now)
 
     def _doubt(self, project: Project, place: str, here: Whereabouts, now: float) -> Iterator[Event]:
-        """Yield `doubtful` once if the robot may be farther from its place than `within`, by its odometry's error."""
+        """Yield `doubtful` once if, by its odometry's error, the robot may be farther from its place than `within`."""
         places = project.section(HallPlaces).by_name
         doubts = place in places and here.doubt > places[place].within
         if doubts and self._doubted != place:

@@ -13,11 +13,11 @@ from lumen.language.folders import KNOWLEDGE_FOLDER
 from lumen.language.language_tags import is_language_tag
 
 MAX_TEXT = 1_000
-"""Longest question or answer, in characters."""
+"""The greatest length of a question or an answer [characters]."""
 MAX_NAME = 40
-"""Longest file name before its number, in characters."""
+"""The greatest length of a file's name before its number [characters]."""
 MAX_SAME = 100
-"""Files with the same name before their numbers."""
+"""The greatest number of files with the same name before their numbers."""
 HEADER = "# yaml-language-server: $schema=../schemas/knowledge.schema.json\n\n"
 
 
@@ -72,7 +72,9 @@ def _names(question: str) -> list[str]:
 
 
 def create_file(file: Path, text: str) -> bool:
-    """Write a new file; return False if it exists. After an error no part of it is left."""
+    """Write a new file; return False if it exists. If writing fails, no part of the file is left, and OSError is
+    raised.
+    """
     try:
         held = os.open(file, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o644)
     except FileExistsError:

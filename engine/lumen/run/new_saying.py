@@ -51,9 +51,9 @@ def write_saying(root: Path, saying: Saying, robot: str = "") -> Path:
 
 
 def with_saying(content: bytes, saying: Saying) -> bytes:
-    """Return the content of a file of sayings with one more, unchanged if it has it already.
+    """Return the content of a file of sayings with one more; unchanged if it already has the saying.
 
-    Raises UsageError if the way it is written leaves no place to add it.
+    Raises UsageError if the way it is written leaves no place to add one.
     """
     keys = (saying.behavior, saying.state, saying.row, saying.language)
     if _is_blank(content):
@@ -77,7 +77,10 @@ def with_saying(content: bytes, saying: Saying) -> bytes:
 
 
 def _edit(document: Document, text: FileText, keys: tuple[str, ...], depth: int, said: str) -> Edit:
-    """Return the edit that adds the saying after the last entry below the longest existing part of its keys."""
+    """Return the edit that adds the saying after the last entry below the longest existing part of its keys.
+
+    `depth` is the number of existing keys.
+    """
     around = keys[:depth]
     report, whole = DocumentReport(document), document.spans[around].value
     last: NodePath = (*around, _last(document.value(around)))
@@ -95,7 +98,7 @@ def _is_blank(content: bytes) -> bool:
 
 
 def _refuse_errors(files: Mapping[str, bytes], what: str) -> None:
-    """Raise UsageError if lint finds an error in the file."""
+    """Raise UsageError, ending with `what`, if lint finds an error in the file of sayings."""
     found = draft(files)
     sayings.check(found)
     speech.check(found)
@@ -133,7 +136,7 @@ def _key(key: str) -> str:
 
 
 def _flow(keys: tuple[str, ...], text: str) -> str:
-    """Return the entry in brackets, below its keys."""
+    """Return the entry in brackets (YAML flow style), below its keys."""
     said = json.dumps(text, ensure_ascii=False)
     if not keys:
         return said

@@ -26,13 +26,13 @@ from lumen.upkeep.garbage import GcScheduler
 from lumen.upkeep.threads import ThreadWatch, WatchedThread
 
 SLOW, WELL = 0.95, 0.98
-"""Share of its speed below which time is slow, and above which it has recovered [1]."""
+"""The share of its speed below which time is slow, and the one above which it has recovered [1]."""
 LOOK_PERIOD = 1.0
-"""Time between two checks of the pace [s]."""
+"""The time between two checks of the pace [s]."""
 
 
 class PaceWatch:
-    """A watch over the share of its speed that a clock keeps; a clock that can't measure it counts as keeping all."""
+    """A watch over the share of its nominal speed that a clock reaches; a clock that can't measure it counts as 1."""
 
     def __init__(self, clock: Clock, monotonic: Callable[[], float] = time.monotonic) -> None:
         self._clock, self._monotonic, self._next = clock, monotonic, 0.0
@@ -40,7 +40,7 @@ class PaceWatch:
 
     @property
     def realtime(self) -> float:
-        """The recent share of its speed that the clock keeps, at most 1."""
+        """The recent share of its nominal speed that the clock reaches, at most 1."""
         return round(min(1.0, self._clock.realtime if isinstance(self._clock, MeasuresPace) else 1.0), 3)
 
     def tick(self) -> str:
@@ -62,20 +62,20 @@ class PaceWatch:
         return ""
 
     def summary(self) -> list[str]:
-        """Return a line about the slowest pace, if it was slow."""
+        """Return a line about the slowest pace, if it was below SLOW."""
         return [f"at its slowest, the exhibition ran at {self.worst:.2f} × real time"] if self.worst < SLOW else []
 
 
 NAP = 0.2
-"""Longest sleep while nothing is due [s], and so the longest delay of an input that does not wake the loop."""
+"""The longest sleep while nothing is due [s], and so the longest delay of an input that does not wake the loop."""
 
 
 @dataclass(frozen=True, slots=True)
 class NodeTime:
-    """How the time of a process passes."""
+    """How time passes in a process."""
 
     speed: float | None = None
-    """Multiple of real time that other processes must share, None if it does not matter."""
+    """The multiple of real time that other processes must share; None if it does not matter."""
     leaps: bool = False
     """Whether ticks in which nothing happens are skipped."""
     paced: Callable[[float], None] = lambda _: None
@@ -86,7 +86,7 @@ EVERY_TICK = NodeTime()
 
 
 class Node:
-    """A loop that ticks its parts in order until one is over or it is interrupted.
+    """A loop that ticks its parts in order until one is over or the loop is interrupted.
 
     With a `presence` it is one of several processes, or a whole exhibition visible to others on the bus, and begins
     after its claim. The functions in `before` are called at each tick with its time [s], before the parts. In real time
@@ -172,7 +172,7 @@ class Node:
         self._begin(self.now)
 
     def run(self, period: float | None = None) -> float:
-        """Tick until it is over, or for `period` [s]; return how long it ran [s]."""
+        """Tick until it is over, or for `period` [s] if that is not None; return how long it ran [s]."""
         with closing(GcScheduler()) as garbage:
             return live(self, period, garbage)
 
@@ -209,7 +209,7 @@ class Node:
         return self._nap.on(on._dozes)
 
     def quiet_time(self) -> float:
-        """Return for how long nothing happens without an input [s]; 0 if that is unknown."""
+        """Return for how long nothing happens without an input [s]; 0 if something may happen at once."""
         if self.presence and not self.presence.settled:
             return 0.0
         until = inf
@@ -220,7 +220,7 @@ class Node:
         return until - self.now
 
     def doze(self, rest: float) -> int:
-        """Sleep for at most `rest` and NAP, until woken, if the clock can; return how many ticks that was."""
+        """Sleep for at most `rest` [s] and NAP, until woken, if the clock can; return the number of ticks slept."""
         if self._dozes is None or rest < 2 * TICK_PERIOD:
             return 0
         return int((self._dozes.doze(self.now + min(rest, NAP) - TICK_PERIOD) - self.now) / TICK_PERIOD + ROUNDING)
@@ -234,7 +234,7 @@ class Node:
                 part.leap(self.now)
 
     def _leap(self) -> None:
-        """Skip the ticks before the next in which something happens, if all parts know when that is."""
+        """Skip the ticks before the next one in which something happens, if that time is known."""
         if (rest := self.quiet_time()) < inf:
             self.pass_over(ceil(rest / TICK_PERIOD - ROUNDING) - 1)
 
@@ -259,7 +259,7 @@ class Node:
         return [*(line for part in self._begun for line in part.summary()), *self.losses()]
 
     def losses(self) -> list[str]:
-        """Return the lines at the end about slow time and dropped messages."""
+        """Return the lines for the end about slow time and dropped messages."""
         counts = self.bus.ability(CountsDrops)
         dropped = ", ".join(f"{count:,} on {key}" for key, count in sorted(counts.dropped.items() if counts else ()))
         return [*self.pace.summary(), *([f"dropped messages: {dropped}"] if dropped else [])]
@@ -278,7 +278,7 @@ class Node:
                 self._begun.append(part)
 
     def _ready(self, part: Part) -> bool:
-        """Return whether the parts that it needs are there; if not, print that once."""
+        """Return whether the parts that it needs are there; if not, report that once."""
         for need in part.needs:
             if self.presence and need not in self.presence.parts and not self._here(self.presence, need):
                 key = self._project.key_of(COMMAND_ROUTE if need == ROBOT_PART else TRACE_ROUTE)
@@ -303,7 +303,7 @@ class Node:
                 )
 
     def _lose(self, thread: WatchedThread) -> None:
-        """Report a thread that can't be restarted; without a vital one no person can stop the robot, so it rests."""
+        """Report a thread that can't be restarted; if it is vital, the robot rests, because no person could stop it."""
         self._narrator.line("trouble", thread.lost)
         if thread.vital:
             for part in self._begun:
@@ -324,7 +324,7 @@ class Node:
             self._time.paced(self.pace.realtime)
 
     def _on_interrupt(self) -> None:
-        """Pass the first interrupt on to the parts; end if none of them handles it."""
+        """Pass the first interrupt on to the parts; if none of them handles it, end the run."""
         if self._interrupts == 1 and not self._heeded:
             self._heeded = True
             heeded = [part.interrupt() for part in self._begun]

@@ -29,25 +29,25 @@ class PresentMoment(NamedTuple):
     at: float
     """The exhibition's time [s]."""
     position: int
-    """Position of the last entry of the journal."""
+    """The position of the last entry of the journal."""
     since: dict[str, float]
     """When each active state became active [s], by name."""
     saying: UnderWay | None
-    """The text that is said, if any."""
+    """The text that is being said; None if there is none."""
     motion: UnderWay | None
-    """The motion under way, if any."""
+    """The motion under way; None if there is none."""
     heard: Spoken | None
-    """The visitor's last words, if any."""
+    """The visitor's last words; None before any."""
     waiting: tuple[HeldEvent, ...]
-    """Events that wait for GO."""
+    """The events that wait for GO."""
     autonomy: Autonomy
     """`ask` or `alone`."""
     model: str | None
-    """Whether the language model is `on` or `off`, None if there is no model."""
+    """Whether the language model is `on` or `off`; None if there is no model."""
     events: int
-    """Events that wait for the next tick."""
+    """The number of events that wait for the next tick."""
     commands: int
-    """Unfinished commands."""
+    """The number of unfinished commands."""
     status: Callable[[], Status]
     """Returns the data of `lumen status`."""
 
@@ -64,7 +64,7 @@ def moment(
     events: int,
     status: Callable[[], Status],
 ) -> PresentMoment:
-    """Return the present state, without computing anything from it yet."""
+    """Return the present state without converting it yet; `NowView` does that on another thread."""
     said, moved = activity.saying, activity.motion
     return PresentMoment(
         project,
@@ -91,7 +91,7 @@ class NowView:
         self._bundle: _Bundle | None = None
 
     def tell(self, now: PresentMoment) -> dict[str, Any]:
-        """Return a moment as JSON data, with all keys of the status."""
+        """Return a moment as JSON data, including all keys of the status."""
         bundle = self._bundle
         if bundle is None or bundle.project is not now.project:
             bundle = self._bundle = _Bundle(now.project)
@@ -118,7 +118,7 @@ class NowView:
 
 
 class _Bundle:
-    """The data that depends only on a project: the places of its states, and the choices it offers."""
+    """The data that depends only on a project: the places of its states, and the names that a console offers."""
 
     def __init__(self, project: Project) -> None:
         self.project = project
@@ -133,7 +133,7 @@ class _Bundle:
         }
 
     def place(self, machine: MachineDefinition, where: NodePath) -> dict[str, Any]:
-        """Return the file and line of a node in a machine's document, None for both if unknown."""
+        """Return the file and line of a node in a machine's document; None for both if they are unknown."""
         found = self._places.get((id(machine), where))
         if found is None:
             file = self._files.get(id(machine)) or self._by_id.get(machine.id)
@@ -169,7 +169,7 @@ def _names(transition: Transition, declared: set[str]) -> Iterator[str]:
 
 
 def _tree(now: PresentMoment, bundle: _Bundle, time: Callable[[float], str]) -> list[dict[str, Any]]:
-    """Return the active states as a tree, with the states of invoked behaviours below their invokers."""
+    """Return the active states as a tree; the states of an invoked behaviour are below the state that invokes it."""
     found: dict[str, dict[str, Any]] = {}
     outermost: list[dict[str, Any]] = []
     for one in running(now.project.machine, now.snapshot):

@@ -29,8 +29,9 @@ def open(
 
     `robot` is the name of a robot, such as `recording`, `simulation`, `naoqi` or `none`, or an object
     (`lumen.ports.Robot`); `bus` is an address (`memory://`, `amqp://…`) or an open bus, which the exhibition closes.
-    Time is that of the robot's world, at `speed` times real time or as fast as possible (`max`), or that of `clock` if
-    there is one. `story` is a scripted visitor. Use the result in a `with` block, or `close` it.
+    Time is that of `clock`, or else of the robot's world, at `speed` times real time or as fast as possible (`max`).
+    `story` is a scripted visitor. `language` is the language that the robot speaks first, by default the project's. Use
+    the result in a `with` block, or `close` it.
 
     Raises UsageError for an unknown name or an object that lacks a method, ProjectError for files with errors, BusError
     and RobotError if the bus or the robot can't be reached.

@@ -10,17 +10,17 @@ from lumen.run.sending import send
 _log = logging.getLogger(__name__)
 
 FACE_PERIOD = 0.1
-"""Time between two images [s]."""
+"""The time between two images [s]."""
 FACE_LATENCY = 0.1
-"""Time from an image to its message [s]."""
+"""The time from an image to its message [s]."""
 FACE_ROUTE = "face"
 
 
 class FaceDetector:
     """A publisher of the visitor's face in the camera's image [px], every `period` [s] and `latency` [s] late.
 
-    The body is the original's (integers `x` and `y`), with `time` [s], when the image was taken. While `quiet` is set,
-    another process publishes real faces instead.
+    The body has the integers `x` and `y`, as the visual module of 2015 sent them, and `time`, when the image was taken
+    [s]. While `quiet` is set, another process publishes real faces instead.
     """
 
     def __init__(

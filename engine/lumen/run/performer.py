@@ -38,15 +38,15 @@ from lumen.run.questions import Questions
 from lumen.run.sending import send
 
 LEFT_OUT = "left_out"
-"""The field of an answer that gives what the body lacks for a command that was left out."""
+"""The field of an answer that names what the body lacks for a command that was left out."""
 
 _log = logging.getLogger(__name__)
 
 
 class Performer:
-    """A performer of commands on the robot and the bus.
+    """Performs commands on the robot and the bus.
 
-    `track` switches a controller on or off. `refuse` returns why the robot may not begin a command, empty if it may.
+    `track` switches a controller on or off. `refuse` returns why the robot may not begin a command; empty if it may.
     """
 
     def __init__(
@@ -59,7 +59,9 @@ class Performer:
     ) -> None:
         self._robot, self._bus, self._track = robot, bus, track
         self.events: list[Event] = []
-        """Answers for the next tick: of commands that end immediately, lack a part of the body, or may not begin."""
+        """Answers for the next tick, to commands that end at once, need a part that the body lacks,
+        or may not begin.
+        """
         self.navigator = Navigator(robot, self._begin)
         """Splits walks to places into single walks."""
         self.questions = questions or Questions(bus)

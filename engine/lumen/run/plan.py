@@ -1,4 +1,4 @@
-"""The plan of an exhibition in this process, or of a part of one, before anything is made."""
+"""The plan of an exhibition in this process, or of the parts of one, before anything is made."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -21,27 +21,27 @@ class Plan:
     project: Project
     """The bundle to run."""
     setup: Setup | None = None
-    """The robot, None if another process has it."""
+    """The robot; None if another process has it."""
     bus: str | Bus = "memory://"
-    """Address of the bus, or an open bus, which is closed with the exhibition."""
+    """The address of the bus, or an open bus, which is closed with the exhibition."""
     story: Story | None = None
-    """Its visitor plays this story."""
+    """The story that its visitor plays; None for none."""
     narrator: Narrator | None = None
-    """Prints what happens."""
+    """Prints what happens; None for a silent run."""
     roles: tuple[str, ...] = ()
-    """The roles of this process, empty for a whole exhibition."""
+    """The roles of this process; empty for a whole exhibition."""
     clock: Clock | None = None
-    """The time, if there is no `setup`."""
+    """The clock, if there is no `setup`."""
     language: str = ""
-    """The language that the robot speaks first, empty for the project's."""
+    """The language that the robot speaks first; empty for the project's."""
     speed: float = 1.0
-    """Multiple of real time of one process of several; the others must have the same."""
+    """The multiple of real time of one process of several; the others must have the same."""
     silent: bool = False
     """Whether to publish nothing of the behaviour, and only the senses that it uses."""
     leaps: bool = False
     """Whether to skip ticks in which nothing happens."""
     before: Sequence[Callable[[float], None]] = ()
-    """Called at each tick with its time [s], before the parts."""
+    """Functions that are called at each tick with its time [s], before the parts."""
     options: Mapping[str, Any] = field(default_factory=dict)
     """Further settings, by the names in the rows of parts."""
 
@@ -62,7 +62,7 @@ class Plan:
 
     @property
     def time(self) -> Clock:
-        """The robot's clock, else the plan's. Raises ValueError if there is neither."""
+        """The robot's clock, else the plan's; raises ValueError without either."""
         clock = self.setup.clock if self.setup else self.clock
         if clock is None:
             raise ValueError("a plan needs a robot or a clock")

@@ -23,13 +23,13 @@ PRESENCE_KEY = DEFAULT_ALIASES[PRESENCE_ROUTE]
 ROBOT_PART, BRAIN, MOTION, VISITOR = "robot", "brain", "motion", "visitor"
 """The roles that Lumen's own code refers to; `roles` has all of them."""
 PRESENCE_PERIOD = 0.5
-"""Time between two signs of life [s]."""
+"""The time between two signs of life [s]."""
 LOST_AFTER = 4.0
-"""Silence after which a process is lost [s]; one that hangs for 3 s is not."""
+"""The silence after which a process is lost [s]; one that hangs for 3 s is not."""
 PRESENCE_TTL = 2.0
-"""Lifetime of a sign of life on the bus [s]."""
+"""The time to live of a sign of life on the bus [s]."""
 MAX_PEERS = 100
-"""Number of known processes at which those silent for LOST_AFTER are forgotten, to bound the memory."""
+"""The number of known processes at which those silent for LOST_AFTER are forgotten, to bound the memory."""
 
 ASKS, HERE, LEAVES = "asks", "here", "leaves"
 """States of a process in its signs of life."""
@@ -38,12 +38,12 @@ _log = logging.getLogger(__name__)
 
 
 def roles() -> tuple[str, ...]:
-    """Return the roles that a process can have besides the modules, those of Lumen first."""
+    """Return the roles that a process can have besides the modules; those of Lumen come first."""
     return tuple(role for _, role in rows("roles"))
 
 
 def all_parts() -> tuple[str, ...]:
-    """Return the parts that a process can be, modules last."""
+    """Return the parts that a process can have: all roles, then the modules."""
     return (*roles(), *module_names())
 
 
@@ -73,7 +73,7 @@ class Peer:
 class Presence:
     """This process among those of one robot's exhibition.
 
-    Until `settle` its signs of life ask the others to answer at once. `more` returns further fields of its signs of
+    Until `settle` its signs of life request the others to answer at once. `more` returns further fields of its signs of
     life.
     """
 
@@ -90,7 +90,7 @@ class Presence:
     ) -> None:
         self.robot, self.parts, self.session = robot, tuple(parts), session or uuid.uuid4().hex[:12]
         self.came: list[Peer] = []
-        """The processes that the last tick noticed first."""
+        """The processes that appeared in the last tick."""
         self._bus, self._key, self._clock, self._more = bus, key, clock, more
         self._state = ASKS
         self._next = 0.0
@@ -103,7 +103,7 @@ class Presence:
 
     @property
     def settled(self) -> bool:
-        """Whether it has been settled and has not left."""
+        """Whether the claim has ended, and this process has not left."""
         return self._state == HERE
 
     def settle(self) -> None:
@@ -111,13 +111,13 @@ class Presence:
         self._state, self._next = HERE, 0.0
 
     def find(self, part: str) -> Peer | None:
-        """Return the live process that has a part, or None; the oldest of several."""
+        """Return the live process that has a part; the oldest of several, None if there is none."""
         peers = (peer for peer in self._peers.values() if part in peer.parts and peer.state == HERE)
         found = filter(self.alive, peers)
         return min(found, key=lambda p: p.since, default=None)
 
     def get(self, session: str) -> Peer | None:
-        """Return the process of a session, however old its last sign of life is."""
+        """Return the process of a session, however old its last sign of life is; None if it is unknown."""
         return self._peers.get(session)
 
     def alive(self, peer: Peer) -> bool:
@@ -134,7 +134,10 @@ class Presence:
         return [peer for peer in self._peers.values() if self.alive(peer)]
 
     def rival(self, part: str) -> Peer | None:
-        """Return another process with the same part that was there before, or asks now with a lower session id."""
+        """Return another process that was there before with the same part, or claims it now with a lower session id.
+
+        None without such a process, or once this one is settled.
+        """
         if self.settled:
             return None
         for peer in self.peers():
@@ -144,7 +147,7 @@ class Presence:
         return None
 
     def tick(self) -> list[Event]:
-        """Send a sign of life when due, and read those of others; return the changes.
+        """Send a sign of life when it is due, and read those of others; return the changes.
 
         These are `robot.lost`, `robot.back`, and the same of `motion` and the other modules, each with `seconds` and no
         time.
@@ -159,14 +162,14 @@ class Presence:
         return self._changes(now)
 
     def _excuse(self, now: float) -> None:
-        """Add the time in which this process did not listen to the others' last signs of life."""
+        """Extend the others' signs of life by the time in which this process did not read them."""
         stood, self._ticked = now - self._ticked, now
         if stood > PRESENCE_PERIOD:
             for peer in self._peers.values():
                 peer.heard += stood
 
     def close(self) -> None:
-        """Announce that this process leaves; harmless when repeated."""
+        """Announce that this process leaves; calling it again does no harm."""
         if self._state != LEAVES:
             self._state = LEAVES
             self._undo()
@@ -206,7 +209,7 @@ class Presence:
         known.parts, known.heard, known.state, known.said = tuple(map(str, parts)), now, state, body
 
     def _changes(self, now: float) -> list[Event]:
-        """Return which of the robot, the motion module and the others were lost or came back since the last tick."""
+        """Return the events of the robot and the modules that were lost or came back since the last tick."""
         events = []
         for part in (ROBOT_PART, MOTION, *module_names()):
             if part in self.parts:
@@ -224,5 +227,5 @@ class Presence:
 
 
 def where_it_runs(peer: Peer) -> str:
-    """Return a process's location, as `process 4711 on stand`."""
+    """Return a process's location, such as `process 4711 on stand`."""
     return f"process {str(peer.said.get('process', '?'))[:20]} on {str(peer.said.get('host', '?'))[:60]}"

@@ -25,15 +25,15 @@ if TYPE_CHECKING:
 
 ASK_ROUTE, ANSWER_ROUTE = "ask", "answer"
 STRICT = Weights((2.5, 15.0, 5.5), none=6.5, least=0.9)
-"""Weights for a language without trial questions in the project: about those of the shipped examples."""
+"""The weights for a language without trial questions in the project, similar to those of the shipped examples."""
 MAX_ANSWERS = 100
-"""Answers that wait for a tick; one more drops the oldest."""
+"""The number of answers that wait for a tick; one more drops the oldest."""
 MAX_PASSAGES = 3
-"""Passages that a language model gets."""
+"""The number of passages that a language model receives."""
 FILLER_AFTER = 1.5
-"""Delay of the filler if the project sets none [s]."""
+"""The delay of the filler if the project does not set it [s]."""
 SAID = ("text", "language", "source", "confidence", "passage", "more")
-"""Fields that are copied from an answer."""
+"""The fields that are copied from an answer."""
 NOBODY = "no answer was found"
 
 _log = logging.getLogger(__name__)
@@ -43,17 +43,17 @@ class OpenQuestion(NamedTuple):
     """A question that was sent to the module."""
 
     offers: Mapping[str, Any]
-    """Events that the answer may raise, with the schemas of their data."""
+    """The events that the answer may raise, with the schemas of their data."""
     language: str
     filler_at: float
-    """When the filler is due [s], infinite if it is not."""
+    """When the filler is due [s]; infinite if none is due."""
 
 
 class Questions:
-    """The open questions; answers become events at the next tick.
+    """The open questions; their answers become events at the next tick.
 
     Passages are searched here: that takes less than a millisecond and needs no module. `visit` counts the visits.
-    `today` returns the date on which they must be valid, `offers` the events that a language model may raise now.
+    `today` returns the date on which passages must be valid, `offers` the events that a language model may raise now.
     """
 
     def __init__(
@@ -62,7 +62,9 @@ class Questions:
         self._bus, self._today, self._offers = bus, today, offers
         self.visit, self._home = 0, ""
         self.silenced = ""
-        """The person who silenced the module, else empty; while set, it is not asked, and its answers are ignored."""
+        """The person who silenced the module, else empty; while it is set, no questions are sent, and answers are
+        ignored.
+        """
         self._fillers: Mapping[str, str] = {}
         self._patience = FILLER_AFTER
         self._open: dict[str, OpenQuestion] = {}
@@ -90,7 +92,11 @@ class Questions:
         self.visit += bool(self._home) and self._home in step.entered
 
     def ask(self, project: Project, id: str, asked: Ask, now: float, origin: MessageOrigin) -> list[Event]:
-        """Search for an answer; return the events that are known at once: the answer, or an error."""
+        """Search for an answer to the question with an id; return the events that are known at once: the answer, or an
+        error.
+
+        Without either, the question is sent to the module, and its answer comes from `drain`.
+        """
         retriever = self._passages(project, asked.language)
         if found := retriever.answer(asked.question, self._weights):
             said = {
@@ -130,7 +136,9 @@ class Questions:
         return not self._received and not any(one.filler_at < inf for one in self._open.values())
 
     def drain(self, now: float) -> list[Event]:
-        """Return the answers to open questions, each with its message as the cause; log and drop the others."""
+        """Return answers and fillers to open questions, each answer with its message as the cause; drop all other
+        answers.
+        """
         events = []
         while self._received:
             message, at = self._received.popleft()
@@ -167,7 +175,9 @@ class Questions:
         return Event(f"done.command.{id}", None, now)
 
     def _raised(self, id: str, offers: Mapping[str, Any], raised: Any, now: float) -> Event:
-        """Return the event that a language model raises, if it was offered and its data is valid; else an error."""
+        """Return the event that a language model raises, if it was offered and its data is valid;
+        else an error event.
+        """
         match raised:
             case {"event": str(event), "data": dict(data)} if event in offers:
                 if JsonSchema({"type": "object", **(offers[event] or {})}).fits(data):
@@ -179,7 +189,7 @@ class Questions:
         self._received.append((message, time()))
 
     def _passages(self, project: Project, language: str) -> "Retriever":
-        from lumen.retrieval.retriever import Retriever  # imports numpy, which only questions need
+        from lumen.retrieval.retriever import Retriever  # this imports numpy, which only questions need
         from lumen.retrieval.trials import weights_of
 
         today = self._today()

@@ -1,4 +1,4 @@
-"""Events that people raise: they are processed like any other, and the sender gets a report on each."""
+"""Events that people raise: they are processed like any other, and the sender receives a report on each."""
 
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any, NamedTuple
@@ -26,7 +26,7 @@ class EventData:
         self._checks: dict[str, list[tuple[Mapping[str, Any], SchemaCheck]]] = {}
 
     def wrong(self, name: str, data: Any) -> str:
-        """Return in a sentence why an event can't have this data; empty if it can, or no schema is declared."""
+        """Return in a sentence why an event can't have this data; empty if it can, or if no schema is declared."""
         if name not in self._checks:
             self._checks[name] = [(schema, SchemaCheck(schema)) for schema in _schemas(self.project, name)]
         reasons = [(schema, check(data)) for schema, check in self._checks[name]]
@@ -47,7 +47,7 @@ def _schemas(project: Project, name: str) -> Iterator[Mapping[str, Any]]:
 
 
 def _right(schema: Mapping[str, Any]) -> str:
-    """Return a sentence that lists the allowed fields and their types, empty if the schema has none."""
+    """Return a sentence that lists the allowed fields and their types; empty if the schema has none."""
     fields = schema.get("properties")
     if not isinstance(fields, Mapping) or not fields:
         return ""
@@ -62,7 +62,7 @@ def _type(schema: Any) -> str:
 
 
 _INTERNAL = ("done.", "error.", "cancelled.", "lost.", SHARED_EVENT)
-"""Beginnings of the names of robots' internal events, which an event from a person could be mistaken for."""
+"""The prefixes of the names of robots' internal events, with which an event from a person could be confused."""
 
 Reply = Callable[[Message, Mapping[str, Any]], None]
 """A function that sends a reply to a message."""
@@ -84,7 +84,7 @@ class _Raised(NamedTuple):
 
 
 class RaisedEvents(Observer):
-    """A raiser of events on request; `reply` is called with the outcome of each.
+    """Raises events on request; `reply` is called with the outcome of each.
 
     An event is recognised by its cause object, which no other event has.
     """
@@ -95,7 +95,7 @@ class RaisedEvents(Observer):
         self._data = EventData(loop.project)
 
     def happen(self, message: Message, now: float) -> None:
-        """Raise the event in a message, or of the button that it names, in this tick, or refuse it."""
+        """Raise the event in a message, or of the button that it names, in this tick, or refuse the request."""
         body = message.body
         if body["ask"] == PRESS.ask:
             loop = self._loop
@@ -124,7 +124,7 @@ class RaisedEvents(Observer):
         self._loop.happen(event)
 
     def look(self) -> None:
-        """Report the events without a step: those that wait for approval, and those that were lost."""
+        """Report the events that had no step: those that wait for approval, and those that were lost."""
         for one in tuple(self._open):
             held = (held for held in self._loop.runtime.approvals.waiting if held.event.cause is one.cause)
             if id := next((held.id for held in held), ""):
@@ -136,7 +136,7 @@ class RaisedEvents(Observer):
             self._open.clear()
 
     def stepped(self, step: Step) -> None:
-        """Report whether the step of a raised event took a transition."""
+        """Report for a raised event whether its step took a transition."""
         for one in self._open:
             if step.event and step.event.cause is one.cause:
                 self._open.remove(one)

@@ -20,25 +20,25 @@ from lumen.run.one_robot import one_robot, robots_of
 
 
 class Reached(NamedTuple):
-    """The bus of a running exhibition, and what is needed to use it."""
+    """The bus of a running exhibition, and the names that its users need."""
 
     bus: Bus
     robot: str
     command: str
-    """Key on which the robot receives commands."""
+    """The key on which the robot receives commands."""
     stop: str
-    """Key on which it receives stops."""
+    """The key on which it receives stops."""
     broker: str = ""
-    """Address of the broker, empty for an embedded bus."""
+    """The address of the broker; empty for an embedded bus."""
     home: str = ""
-    """Name of the robot's own folder if the project has `robots:`."""
+    """The name of the robot's own folder if the project has `robots:`; else empty."""
 
 
 def reach_exhibition(project: str | None, bus: str | None, robot: str = "") -> Reached:
     """Connect to the exhibition of a project (default: the one here or above); `bus` may be its bus's address.
 
-    Of several robots it is that of `robot`; by default the first that runs here, else the first. Raises BusError, with
-    advice, if no exhibition is found.
+    Of several robots it is that of `robot`; by default the first one that runs here, else the first. Raises BusError,
+    with advice, if no exhibition is found.
     """
     root = running_project(project)
     wanted = one_robot(root, robot)
@@ -68,7 +68,7 @@ def robots_meant(project: str | None) -> list[str]:
 
 
 def _running(root: Path, robot: str = "") -> dict[str, Any] | None:
-    """Return what the exhibition of this project that runs on this machine has published; None if none runs.
+    """Return the data that the project's running exhibition on this machine has published; None if none runs.
 
     Of several robots it is that of `robot`, if one is given. An address left by a killed run is ignored, because no
     process holds its home any more.
@@ -98,12 +98,12 @@ def _same_folder(one: object, other: Path) -> bool:
 
 
 def _home(found: dict[str, Any] | None) -> str:
-    """Return the name of the running robot's folder, empty if it has none of its own."""
+    """Return the name of the running robot's folder; empty if it has no folder of its own."""
     return str(found.get("home", "")) if found else ""
 
 
 def _robot(root: Path, found: dict[str, Any] | None, home: str) -> str:
-    """Return the robot's name from the exhibition, else from lumen.yaml, even if that has errors."""
+    """Return the robot's name from the exhibition, else from lumen.yaml, even if that file has errors."""
     if found and isinstance(found.get("robot"), str):
         return str(found["robot"])
     settings = main_settings(root, home)
@@ -111,7 +111,9 @@ def _robot(root: Path, found: dict[str, Any] | None, home: str) -> str:
 
 
 def _keys(root: Path, found: dict[str, Any] | None, home: str) -> tuple[str, str]:
-    """Return the keys for commands and stops from the exhibition, else from lumen.yaml, even if that has errors."""
+    """Return the keys for commands and stops from the exhibition, else from lumen.yaml, even if
+    that file has errors.
+    """
     if found and isinstance(found.get("command"), str) and isinstance(found.get("stop"), str):
         return found["command"], found["stop"]
     settings = main_settings(root, home)

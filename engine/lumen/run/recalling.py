@@ -1,4 +1,4 @@
-"""Steps of an ended run, or older than a running one remembers: replayed from the journal."""
+"""Steps of an ended run, or older ones than a running exhibition remembers: replayed from the journal."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -22,16 +22,16 @@ from lumen.statechart import Snapshot, Step
 
 NOT_ASKED = "no running exhibition was asked"
 MAX_FILES = 8
-"""Files of a run, up to the requested moment, that are read; some hours each."""
+"""The number of a run's files, up to the requested moment, that are read; each has some hours."""
 
 
 def answer_from_journal(
     project: str | None, question: str, what: str, at: str | None, why: str, robot: str = ""
 ) -> dict[str, Any]:
-    """Return an answer from the last run that began before `at` (ISO 8601).
+    """Return an answer from the last run that began before `at` (ISO 8601; None for now).
 
-    `why` is the reason why no running exhibition was asked. Raises UsageError, with that reason or advice, if the
-    journal has no answer.
+    `question`, `what` and `at` are those of `answering.answer`. `why` is the reason why no running exhibition was
+    asked. Raises UsageError, with that reason or advice, if the journal has no answer.
     """
     root = running_project(project)
     robot = one_robot(root, robot)
@@ -44,8 +44,8 @@ def answer_from_journal(
 def why(what: str = "", path: str | None = None, at: str | None = None) -> dict[str, Any]:
     """Return why something happened in the last run of a project, as `lumen why --format json` prints it.
 
-    `path` is the project's folder, by default the one here or above; `at` is an ISO 8601 time until which to look.
-    Raises UsageError, with advice, if it did not happen or no journal is kept.
+    `path` is the project's folder, by default the one here or above; `at` is an ISO 8601 time: only what happened until
+    then counts. Raises UsageError, with advice, if it did not happen or there is no journal.
     """
     return answer_from_journal(path, WHY.ask, what, at, NOT_ASKED)
 
@@ -56,9 +56,9 @@ def why_not(what: str, path: str | None = None, at: str | None = None) -> dict[s
 
 
 def recalled(root: Path, until: float | None = None, robot: str = "") -> Iterator[RecordedStep]:
-    """Yield the kept steps of the project's last run that began before `until` [s since 1970, in UTC].
+    """Yield the recorded steps of the project's last run that began before `until` [s since 1970, in UTC].
 
-    A story runs on a date of its own, so it is used only without `until`, or if no visit began before it.
+    A story runs on a date of its own, so one is used only without `until`, or if no visit began before it.
     """
     found = sorted(headers(home_of(root, robot) / JOURNAL_FOLDER), key=lambda row: row[1].began)
     visits = [row for row in found if until is not None and not row[1].story and row[1].began <= until]
@@ -78,7 +78,7 @@ def recalled(root: Path, until: float | None = None, robot: str = "") -> Iterato
 
 
 class _Standing:
-    """A converter of replayed entries to recorded steps: a jump becomes a reload, a keyframe nothing."""
+    """A converter of replayed entries to recorded steps: a jump becomes a reload, and a keyframe becomes nothing."""
 
     def __init__(self, kept: KeptBundles) -> None:
         self._kept = kept

@@ -10,6 +10,7 @@ class StateBox:
 
     id: str
     title: str
+    """The name that is shown."""
     rows: tuple[str, ...] = ()
     """Descriptions of its transitions."""
     within: tuple["StateBox", ...] = ()
@@ -26,11 +27,13 @@ class StateBox:
 
 @dataclass(frozen=True)
 class Diagram:
-    """A picture: its outermost boxes, and the arrows between boxes by their ids, each once, in order."""
+    """A picture of a behaviour."""
 
     title: str
     boxes: tuple[StateBox, ...]
+    """The outermost boxes."""
     arrows: tuple[tuple[str, str], ...] = field(default=())
+    """Pairs of boxes' ids, each once, in order."""
 
     def all(self) -> Iterator[StateBox]:
         """Yield every box, outer ones first."""

@@ -35,7 +35,7 @@ def _box(box: StateBox, ids: dict[str, str], depth: int) -> Iterator[str]:
 
 
 def _arrow(one: StateBox, other: StateBox, ids: dict[str, str]) -> str:
-    """Return an arrow; one to or from a frame ends at the frame."""
+    """Return the line of an arrow; an arrow to or from a frame ends at the frame."""
     looks = [f"{end}=cluster_{ids[box.id]}" for end, box in (("ltail", one), ("lhead", other)) if box.within]
     shown = f" [{', '.join(looks)}]" if looks else ""
     return f"  {ids[_leaf(one).id]} -> {ids[_leaf(other).id]}{shown}"

@@ -1,6 +1,6 @@
-"""Nodes in layers, after Sugiyama, Tagawa and Toda (1981): ranks, then an order with few crossings, then places.
+"""Nodes in layers, after Sugiyama, Tagawa and Toda (1981): ranks, then an order with few crossings, then positions.
 
-The result is deterministic: of equally good alternatives, the first given comes first.
+The result is deterministic: of equally good alternatives, the one given first is chosen.
 """
 
 import itertools
@@ -14,7 +14,7 @@ SETTLING = 12
 GAP, LAYER_GAP = 28.0, 46.0
 """The distances between two nodes of a layer, and between layers [px]."""
 WAY = 14.0
-"""The room for an arrow that passes through a layer [px]."""
+"""The width that is left for an arrow that passes through a layer [px]."""
 
 
 class Extent(NamedTuple):
@@ -36,15 +36,18 @@ Edge = tuple[N, N]
 
 
 class Layering(NamedTuple):
-    """The upper left corner of each node, the size of the picture, and the points that each edge passes."""
+    """The result of a layout."""
 
     corners: Mapping[object, Point]
+    """The upper left corner of each node."""
     size: Extent
+    """The size of the picture."""
     ways: Mapping[tuple[object, object], tuple[Point, ...]]
+    """The points that each edge passes between its ends."""
 
 
 def layered(sizes: Mapping[N, Extent], edges: Sequence[Edge[N]], widest: float) -> Layering:
-    """Return nodes laid out in layers from top to bottom, each at most `widest` [px] wide if possible.
+    """Return nodes laid out in layers from top to bottom, each layer at most `widest` [px] wide if possible.
 
     An edge that leads upwards is laid out as if it led downwards.
     """
@@ -80,7 +83,9 @@ def _way(
 
 
 def _without_cycles(nodes: Sequence[N], edges: Sequence[Edge[N]]) -> list[Edge[N]]:
-    """Return the edges, with those reversed that close a cycle when walking from the first node."""
+    """Return the edges, with those reversed that close a cycle in a depth-first walk from the first node; loops are
+    left out.
+    """
     out: dict[N, list[N]] = {n: [] for n in nodes}
     for one, other in edges:
         out[one].append(other)
@@ -104,7 +109,7 @@ def _without_cycles(nodes: Sequence[N], edges: Sequence[Edge[N]]) -> list[Edge[N
 
 
 def _ranks(nodes: Sequence[N], down: Sequence[Edge[N]]) -> dict[N, int]:
-    """Return the length of the longest path from the top to each node."""
+    """Return the length of the longest path to each node from a node at the top."""
     below: dict[N, list[N]] = {n: [] for n in nodes}
     above = dict.fromkeys(nodes, 0)
     for one, other in down:
@@ -112,7 +117,7 @@ def _ranks(nodes: Sequence[N], down: Sequence[Edge[N]]) -> dict[N, int]:
         above[other] += 1
     ranks = dict.fromkeys(nodes, 0)
     ready = [n for n in nodes if not above[n]]
-    for n in ready:  # it grows meanwhile
+    for n in ready:  # `ready` grows during the loop
         for other in below[n]:
             ranks[other] = max(ranks[other], ranks[n] + 1)
             above[other] -= 1
@@ -122,7 +127,7 @@ def _ranks(nodes: Sequence[N], down: Sequence[Edge[N]]) -> dict[N, int]:
 
 
 def _narrow(ranks: Mapping[N, int], sizes: Mapping[N, Extent], widest: float) -> dict[N, int]:
-    """Return the ranks, with those that are too wide split."""
+    """Return the ranks, after splitting those that are wider than `widest`."""
     found: dict[N, int] = {}
     last = -1
     for rank in sorted(set(ranks.values())):
@@ -137,7 +142,7 @@ def _narrow(ranks: Mapping[N, int], sizes: Mapping[N, Extent], widest: float) ->
 def _with_ways(
     ranks: Mapping[N, int], room: dict[N, Extent], edges: Sequence[Edge[N]]
 ) -> tuple[list[list[object]], dict[tuple[object, object], list[object]], dict[object, Extent]]:
-    """Return the layers, with a narrow node for each edge that passes; each edge as its nodes; and all sizes."""
+    """Return the layers, with a narrow node for each edge that passes one; each edge as its nodes; and all sizes."""
     layers: list[list[object]] = [[] for _ in range(max(ranks.values(), default=-1) + 1)]
     for n, rank in ranks.items():
         layers[rank].append(n)
@@ -167,7 +172,9 @@ def _neighbours(chains: Mapping[tuple[object, object], Sequence[object]]) -> dic
 
 
 def _order(layers: list[list[object]], joined: Mapping[object, Sequence[object]]) -> None:
-    """Put each node at the mean place of its neighbours in the layer before, down and up again; keep the best."""
+    """Sort each layer by the mean position of the nodes' neighbours in the layer before, down and up again; keep the
+    best.
+    """
     best, crossings = [list(layer) for layer in layers], _crossings(layers, joined)
     for sweep in range(SWEEPS):
         numbers = range(1, len(layers)) if sweep % 2 == 0 else range(len(layers) - 2, -1, -1)
@@ -198,7 +205,7 @@ def _crossings(layers: Sequence[Sequence[object]], joined: Mapping[object, Seque
 def _centres(
     layers: Sequence[Sequence[object]], joined: Mapping[object, Sequence[object]], room: Mapping[object, Extent]
 ) -> dict[object, float]:
-    """Return the middle of each node from the left: near its neighbours, without overlap."""
+    """Return the middle of each node [px] from the left: near its neighbours, without overlap."""
     centres: dict[object, float] = {}
     for layer in layers:
         whole = sum(room[n].width for n in layer) + GAP * (len(layer) - 1)
@@ -214,7 +221,7 @@ def _centres(
 
 
 def _apart(wished: Sequence[float], widths: Sequence[float]) -> list[float]:
-    """Return the places nearest to the wished ones without overlap: the mean of pushing right and pushing left."""
+    """Return positions near the wished ones, without overlap: the mean of pushing right and pushing left."""
     right, left = list(wished), list(wished)
     for i in range(1, len(right)):
         right[i] = max(right[i], right[i - 1] + (widths[i - 1] + widths[i]) / 2 + GAP)

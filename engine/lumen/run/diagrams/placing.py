@@ -1,4 +1,4 @@
-"""Places the boxes of a diagram: the content of a box is laid out first, then the box as one node."""
+"""The positions of a diagram's boxes: the content of a box is laid out first, then the box as one node."""
 
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
@@ -7,7 +7,7 @@ from lumen.run.diagrams.diagram import Diagram, StateBox
 from lumen.run.diagrams.layering import GAP, Extent, Point, layered
 
 WIDEST, WAYS = 1260.0, 60.0
-"""The greatest width of a layer, and the room around a frame for arrows [px]: readable in a width of 1400."""
+"""The greatest width of a layer, and the room around a frame for arrows [px], so that a width of 1400 suffices."""
 TITLE, ROW = 14.0, 12.0
 """Sizes of letters [px]."""
 TITLE_HEIGHT, ROW_HEIGHT = 20.0, 16.0
@@ -19,20 +19,23 @@ _BOLD = 1.14
 
 
 class PlacedBox(NamedTuple):
-    """A box with its upper left corner in the picture [px]; `within` are the boxes inside."""
+    """A box with its position."""
 
     box: StateBox
     corner: Point
+    """Its upper left corner in the picture."""
     size: Extent
     within: tuple["PlacedBox", ...] = ()
+    """The boxes inside."""
 
 
 class PlacedArrow(NamedTuple):
-    """An arrow between two boxes side by side in the same frame, and the points through which it goes."""
+    """An arrow between two boxes in the same frame."""
 
     start: PlacedBox
     end: PlacedBox
     way: tuple[Point, ...]
+    """The points that it passes between them."""
 
 
 class PlacedDiagram(NamedTuple):

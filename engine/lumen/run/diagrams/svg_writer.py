@@ -26,7 +26,7 @@ INK, QUIET, LINE, ARROW = "#1f2d3d", "#51637a", "#5b7492", "#8496ac"
 FRAMES = ("#f4f7fb", "#eaf0f7", "#e0e9f3", "#d7e2ef")
 MARKED = "#fff3cf"
 SPREAD = 0.6
-"""The part of a side along which arrows begin and end."""
+"""The share of a side along which arrows begin and end."""
 
 
 def svg(diagram: Diagram) -> str:
@@ -110,7 +110,10 @@ def _arrows(arrows: tuple[PlacedArrow, ...]) -> Iterator[str]:
 
 
 def _spread(arrows: tuple[PlacedArrow, ...]) -> dict[tuple[int, bool], Point]:
-    """Return the points where arrows begin (True) and end, spread along a side in the order of their other ends."""
+    """Return the points at which arrows begin (True) and end, spread along a side in the order of their other ends.
+
+    The keys are an arrow's index and whether it begins there.
+    """
     sides: dict[tuple[str, bool], list[tuple[float, int, bool, PlacedBox]]] = {}
     for number, arrow in enumerate(arrows):
         down = arrow.start.corner.y < arrow.end.corner.y

@@ -14,7 +14,9 @@ AGAIN = "again"
 
 
 def rows_of(machine: MachineDefinition, state: State, only: str = "") -> Iterator[str]:
-    """Yield a row for each target, with everything that leads there; with `only`, just those to that state's path."""
+    """Yield a row for each target with the causes of its transitions; with `only`, a state's path, just those to that
+    state.
+    """
     by_target: dict[str, list[str]] = {}
     seen: set[str] = set()
     for transition in (t for t in state.transitions if not made(t.where)):
@@ -71,7 +73,7 @@ def _phrase(node: ExpressionNode) -> str:
 
 
 def short_name(states: Mapping[str, State], path: str) -> str:
-    """Return the end of a path."""
+    """Return the last part of a path; for the outermost state its alias or `the whole`."""
     return path.rpartition(".")[2] or states[path].alias or "the whole"
 
 
@@ -83,7 +85,7 @@ def _goal(machine: MachineDefinition, path: str) -> str:
 
 
 def _lines(causes: Sequence[str], goal: str) -> Iterator[str]:
-    """Yield lines with as many causes as fit, and the goal at the end of the last."""
+    """Yield lines with as many causes as fit, and the goal at the end of the last one."""
     line = ""
     for number, cause in enumerate(causes):
         shown = cause if len(cause) <= MAX_ROW else f"{cause[: MAX_ROW - 1].rstrip()}…"

@@ -82,14 +82,14 @@ def _rows(machine: MachineDefinition, state: State) -> Iterable[str]:
 
 
 def _runs(state: State) -> Iterable[str]:
-    """Yield a state's activities besides its states: other behaviours, rounds."""
+    """Yield a state's other activities: the behaviours that it invokes, and its `for`."""
     yield from (f"invokes {invocation(invoke)}" for invoke in state.invoke)
     if state.for_each:
         yield f"for each {state.for_each.variable}"
 
 
 def _arrows(machine: MachineDefinition, within: str = "") -> tuple[tuple[str, str], ...]:
-    """Return which states lead to which, except to a hub, or between a state and its content."""
+    """Return the arrows as pairs of ids, except to a hub, or between a state and its content."""
     hubs = {path for path, count in _led_here(machine).items() if count > MAX_ARROWS_IN}
     found: dict[tuple[str, str], None] = {}
     for state in machine.states.values():
@@ -102,7 +102,7 @@ def _arrows(machine: MachineDefinition, within: str = "") -> tuple[tuple[str, st
 
 
 def _drawn(machine: MachineDefinition, path: str) -> str:
-    """Return the state with a box: for a history the enclosing one."""
+    """Return the path of the state whose box is drawn: for a history state, its parent."""
     state = machine.states[path]
     return state.parent or "" if state.kind is StateKind.HISTORY else path
 
@@ -114,7 +114,7 @@ def _led_here(machine: MachineDefinition) -> Counter[str]:
 
 
 def _inside(path: str, other: str) -> bool:
-    """Return whether a state is another one, or within it."""
+    """Return whether a state is another one, or below it."""
     return not other or path == other or path.startswith(f"{other}.")
 
 

@@ -1,4 +1,4 @@
-"""The forgetting of people by features, by the rows of their manifests; and the report on it."""
+"""The forgetting of people by features, by the rows of their manifests; and the report about it."""
 
 import logging
 from collections.abc import Callable, Iterable, Iterator
@@ -12,10 +12,11 @@ from lumen.language.routes import Carried, Direction, Route
 
 
 class ForgottenPlace(NamedTuple):
-    """A file or another place, and what was deleted or is left there."""
+    """A file or another place."""
 
     where: str
     what: str
+    """The data that was deleted or is left there, in words."""
 
 
 @dataclass
@@ -23,19 +24,19 @@ class Forgetting:
     """The result of forgetting a person."""
 
     visitors: int = 0
-    """Number of deleted visitors."""
+    """The number of deleted visitors."""
     entries: int = 0
-    """Number of deleted entries."""
+    """The number of deleted entries."""
     pictures: int = 0
-    """Number of deleted pictures."""
+    """The number of deleted pictures."""
     deleted: list[ForgottenPlace] = field(default_factory=list)
-    """Places where something was deleted."""
+    """The places where something was deleted."""
     left: list[ForgottenPlace] = field(default_factory=list)
-    """Places where something could not be deleted."""
+    """The places where something could not be deleted."""
     elsewhere: list[ForgottenPlace] = field(default_factory=list)
-    """Places that can't be reached from here."""
+    """The places that can't be reached from here."""
     others: tuple[str, ...] = ()
-    """Names of other visitors that contain the name."""
+    """The names of other visitors that contain the name."""
 
 
 FILES_ELSEWHERE = "each machine that runs a part has its own files: run the command there, too"
@@ -46,7 +47,7 @@ COPIES = "videos, sounds and transcripts of runs, recordings that were moved, co
 def out_of_reach(routes: Iterable[Route], broker: str) -> Iterator[ForgottenPlace]:
     """Yield the places that can't be reached from here.
 
-    With the address of a `broker`, they include its streams and queues that keep messages of these routes.
+    If `broker` is not empty, they include its streams and queues that keep messages of these routes.
     """
     if broker:
         for route in (route for route in routes if route.carried is Carried.JOURNAL):
@@ -74,7 +75,7 @@ class FeatureForgetter:
     """A forgetter that calls every feature; `find` returns the part or service of a class in this process, or None.
 
     If code of an installed package fails, the other features still forget. The log then has only the type of the error,
-    because its message may contain the name.
+    because the message may contain the name.
     """
 
     def __init__(self, find: Callable[[type[Any]], Any]) -> None:
@@ -87,7 +88,7 @@ class FeatureForgetter:
                 self._forget(resolve(where), person)
             except KeyboardInterrupt:
                 raise
-            except BaseException as error:  # even SystemExit
+            except BaseException as error:  # a package's code may even raise SystemExit
                 if (distribution := distribution_of(feature)) is None:
                     raise
                 kind = type(error).__name__

@@ -22,15 +22,15 @@ from lumen.run.forgetting.added import Forgetting, ForgottenPlace
 from lumen.run.snapshot_store import SNAPSHOT_FILE
 
 DRAFT_AGE = 5.0
-"""Age from which an unfinished draft of a file counts as left behind by a crash [s]."""
+"""The age [s] from which an unfinished draft of a file counts as left behind by a crash."""
 PATIENCE = 5.0
-"""Longest wait until a running exhibition has forgotten what it remembers [s]."""
+"""The longest wait until a running exhibition has deleted the name from its own files [s]."""
 
 
 def forget_in(folder: Path, name: str, found: Forgetting) -> None:
-    """Forget a person in all files of the home in `folder`, and add to `found` what was deleted and what is left.
+    """Forget a person in all files of the home in `folder`, and add the deleted and the remaining data to `found`.
 
-    A running exhibition forgets its own memory; this waits for it.
+    A running exhibition changes its own files; this waits for it, for at most PATIENCE.
     """
     for feature, where in rows("file_forgetters"):
         called(feature, where, folder, name, found)
@@ -53,7 +53,7 @@ def forget_inputs(folder: Path, name: str, found: Forgetting) -> None:
 
 
 def attempt(found: Forgetting, file: Path, work: Callable[[], None]) -> None:
-    """Do `work` if the file exists; record a file that can't be written in `found.left`, and continue."""
+    """Do `work` if the file exists; a file that can't be written is recorded in `found.left`, and raises nothing."""
     try:
         if file.exists():
             work()
@@ -137,7 +137,7 @@ def _names(file: Path, person: PersonName) -> bool:
 
 
 def await_others(condition: Callable[[], bool]) -> None:
-    """Poll the condition, which another process fulfils, for at most PATIENCE."""
+    """Poll the condition, which another process must meet, for at most PATIENCE."""
     deadline = time.monotonic() + PATIENCE
     while not condition() and time.monotonic() < deadline:
         time.sleep(0.02)

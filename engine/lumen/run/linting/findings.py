@@ -15,18 +15,18 @@ class Findings:
 
     diagnostics: Sequence[Diagnostic]
     files: Mapping[str, bytes]
-    """Contents of the project's files."""
+    """The contents of the project's files."""
     root: str = ""
-    """Folder of the project, empty if there is no project."""
+    """The folder of the project; empty if there is no project."""
     asked: Collection[str] = ()
     """Files that the user named; empty for the whole project."""
     elsewhere: int = 0
-    """Number of findings in other files, which are not shown."""
+    """The number of findings in other files, which are not shown."""
     names: dict[str, str] = field(default_factory=dict, compare=False, repr=False)
     """Cache of `name`."""
 
     def name(self, file: str) -> str:
-        """Return the path of a project's file from the working directory, so that a terminal can open it."""
+        """Return the path of a project's file relative to the working directory, so that a terminal can open it."""
         if file not in self.names:
             self.names[file] = _near(os.path.join(self.root, file)) if self.root else file
         return self.names[file]

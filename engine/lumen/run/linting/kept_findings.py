@@ -1,9 +1,9 @@
 """Earlier findings of lint, reused for files that are the same byte for byte, by the same engine.
 
-They are in the user's cache, under a hash of the project's files, their place, the day (a fact may be past), the
-engine's own files and Python. Kept with them is a record of what else lint looked at: sounds, models, time zones, the
-imported libraries. If one of these differs now, the files are checked again; if one changed just before lint looked at
-it, nothing is kept.
+They are in the user's cache, under a hash of the project's files, their place, the day (a passage's date may have
+passed), the engine's own files and Python. A record of everything else that lint looked at is stored with them: sounds,
+models, time zones, the imported libraries. If one of these differs now, the files are checked again; if one changed
+just before lint looked at it, nothing is stored.
 """
 
 import hashlib
@@ -19,11 +19,11 @@ from lumen.project.looks import Looks, unchanged
 from lumen.upkeep.own_folders import CacheFolder
 
 MAX_KEPT = 256
-"""Sets of findings that are kept, a few kB each."""
+"""The number of sets of findings that are stored, a few kB each."""
 
 
 def known_or_checked(root: Path, files: Mapping[str, bytes]) -> tuple[Diagnostic, ...]:
-    """Return all findings in these files: the kept ones if they still hold, else those of a new check."""
+    """Return all findings in these files: the stored ones if they still hold, else those of a new check."""
     folder, name = CacheFolder("findings", MAX_KEPT), _name(root, files)
     known = _read(folder.read(name))
     if known is not None:
@@ -57,7 +57,7 @@ def _plain(found: Diagnostic) -> list[Any]:
 
 
 def _read(content: bytes | None) -> tuple[Diagnostic, ...] | None:
-    """Return the kept findings, None if there are none or they no longer hold."""
+    """Return the stored findings; None if there are none that still hold."""
     try:
         kept = json.loads(content or b"null")
         if not unchanged(kept["looks"]):

@@ -16,25 +16,25 @@ from lumen.project.memoization import begin, newly_made, packed, unpack
 from lumen.upkeep.own_folders import CacheFolder
 
 MAX_KEPT = 8
-"""Projects whose memory is kept, some MB each."""
+"""The number of projects whose memory is stored, some MB each."""
 MUCH = 0.2
-"""Share of new results from which the memory is saved again, which takes as long as reading some files."""
+"""The share of new results from which the memory is saved again; saving takes as long as reading some files."""
 
 
 def recall_memory(root: Path) -> None:
-    """Load the kept memory of a project, if it still holds."""
+    """Load the stored memory of a project, if it still holds."""
     content = CacheFolder("memory", MAX_KEPT).read(_name(root)) or b""
     looks, _, memory = content.partition(b"\n")
     begin()
     try:
         if unchanged(json.loads(looks)):
             unpack(memory)
-    except Exception:  # the file may contain anything: everything is worked out again
+    except Exception:  # the file may contain anything: then all results are computed again
         return
 
 
 def keep_memory(root: Path) -> None:
-    """Save the memory, if at least the share MUCH of it is new."""
+    """Save the memory, if at least the share MUCH of its results is new."""
     if newly_made() < MUCH:
         return
     looks = Looks()

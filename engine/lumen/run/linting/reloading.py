@@ -1,4 +1,4 @@
-"""Findings about what a reload of a project would refuse, move or forget."""
+"""Findings about values and states that a reload of a project would refuse, move or forget."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -12,7 +12,7 @@ from lumen.run.versions import version
 
 
 def compared(found: Findings, name: str, wanted: Callable[[Diagnostic], bool]) -> Findings:
-    """Return the findings with those of a reload from the version `name`, if the project has no errors."""
+    """Return the findings, plus those of a reload from the version `name` if the project has no errors."""
     root = Path(found.root)
     old, new = version(name, root).project, check_files(root, found.files)[0]
     more = [d for d in against(old, new) if wanted(d)] if new else []

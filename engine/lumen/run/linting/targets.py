@@ -1,4 +1,4 @@
-"""The projects and files that lint is asked about, and its findings in them."""
+"""The projects and files that the command line names for lint, and the findings in them."""
 
 import sys
 from collections.abc import Callable, Mapping, Sequence
@@ -36,7 +36,7 @@ class LintTarget:
         return dict(sorted({**own_files(read_files(self.root)), **dict(self.typed)}.items()))
 
     def shown(self, diagnostic: Diagnostic) -> bool:
-        """Return whether a finding is in a file that was asked about."""
+        """Return whether a finding is in a file that was named, or no file was."""
         return not self.only or diagnostic.place.file in self.only
 
 
@@ -49,8 +49,8 @@ class FindingsOf(Protocol):
 def lint_targets(paths: Sequence[str], stdin_name: str | None = None, *, whole: bool = False) -> list[LintTarget]:
     """Return the projects that these folders and files are or belong to; without paths, the one here or above.
 
-    For a file, only findings in that file are shown; with `whole`, those of its whole project. Raises UsageError for a
-    path outside a project, and for a file that lint does not read.
+    For a file, only findings in that file are shown; with `whole`, those of its whole project. `-` reads standard input
+    as the file `stdin_name`. Raises UsageError for a path outside a project, and for a file that lint does not read.
     """
     if STDIN in paths:
         return [_typed(paths, stdin_name)]
@@ -67,7 +67,7 @@ def lint_targets(paths: Sequence[str], stdin_name: str | None = None, *, whole: 
 
 
 def lint(what: LintTarget, wanted: Wanted, files: Mapping[str, bytes] | None = None, *, kept: bool = False) -> Findings:
-    """Return the wanted findings of a project, and count those in files that were not asked about.
+    """Return the wanted findings of a project, and the number of those in files that were not named.
 
     `files` are its contents if they were already read. With `kept`, earlier findings may be reused.
     """
@@ -87,7 +87,7 @@ def checked(root: Path, files: Mapping[str, bytes], *, kept: bool = False) -> tu
 
 
 def _owner(path: str, whole: bool) -> tuple[Path, set[str]]:
-    """Return the project of a folder or file, and which of its files are meant; no files mean the whole project."""
+    """Return the project of a folder or file, and which of its files are meant; an empty set means the whole one."""
     here = Path(path)
     try:
         alone = here.is_file() and here.name != MAIN_FILE
@@ -109,7 +109,7 @@ def _owner(path: str, whole: bool) -> tuple[Path, set[str]]:
 
 
 def _root(path: Path) -> Path | None:
-    """Return the nearest project above a file or folder, or None."""
+    """Return the nearest project above a file or folder, else None."""
     return project_above(path.absolute().parent)
 
 

@@ -1,1 +1,1 @@
-"""The makers of Lumen's own parts: functions that take the services made so far (`lumen.features.core`)."""
+"""The makers of Lumen's own parts: functions that receive the services made so far (`lumen.features.core`)."""

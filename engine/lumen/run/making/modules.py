@@ -19,10 +19,10 @@ from lumen.run.services import Services
 
 @dataclass(frozen=True, slots=True)
 class ModulesPlan:
-    """How modules take part."""
+    """The way in which modules take part."""
 
     folder: Path | None = None
-    """Folder for their files, None if nothing may last."""
+    """The folder for their files; None if nothing may be saved."""
     awaited: bool = False
     """Whether each tick waits for the eyes, so that their faces do not depend on the machine's speed."""
 
@@ -40,7 +40,7 @@ def modules(services: Services) -> list[Part]:
 def own_modules(services: Services) -> list[OwnModulePart]:
     """Make the parts that watch the project's own programs: all for a behaviour, else those that this process starts.
 
-    A story has none.
+    A story has no such parts.
     """
     plan = services.plan
     names = [name for name in own_modules_of(services.project.modules) if plan.brain or name in plan.roles]
@@ -68,7 +68,7 @@ def _own_module(services: Services, name: str) -> OwnModulePart:
 
 
 def _module(services: Services, name: str) -> Part | None:
-    """Return a module, or None if it can't work, which is reported.
+    """Return a module; None if it can't work, which is reported.
 
     Raises LumenError instead if running modules is the role of this process.
     """

@@ -30,7 +30,7 @@ def journal(services: Services) -> None:
 
 
 def forgetting(services: Services) -> ForgettingPart | None:
-    """Make the part that forgets a visitor; None if this process stores no visitors."""
+    """Make the part that forgets a visitor; None if this process keeps no data about visitors."""
     project, bus, added = services.plan.project, services.bus, FeatureForgetter(services.get)
     if services.plan.brain:
         forget = services.behavior.forget, services[RunRecords].forget, added.forget
@@ -82,7 +82,7 @@ def operator(services: Services) -> OperatorPart:
 def records(services: Services) -> RecordsPart:
     """Make the part that saves the behaviour's snapshot and completes the journal.
 
-    A story in one process saves nothing; in a brain's own process it continues after a crash.
+    A story in one process saves nothing; in a brain's own process the snapshot lets it continue after a crash.
     """
     plan = services.plan
     lasts = directory_of(services) is not None and (plan.story is None or bool(plan.roles))
@@ -103,6 +103,6 @@ def recovered(services: Services) -> Resumption | FreshStart:
 
 
 def directory_of(services: Services) -> RunDirectory | None:
-    """Return the directory of the run, None for a run that keeps nothing."""
+    """Return the directory of the run; None for a run that saves nothing."""
     directory: RunDirectory | None = services.plan.options.get("directory")
     return directory

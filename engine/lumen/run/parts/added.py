@@ -22,8 +22,8 @@ _log = logging.getLogger(__name__)
 class AddedPart(Part, Observer):
     """A wrapper that passes every call on to `own`, a part made by a row of a package.
 
-    After a fault that part is closed and gets no more calls. `stopped` is then called once with the part's name and its
-    package, and with a sentence about the fault. Raises TypeError if `own` is not a part.
+    After a fault that part is closed and receives no more calls. `stopped` is then called once with the part's name and
+    its package, and with a sentence about the fault. Raises TypeError if `own` is not a valid part.
     """
 
     def __init__(self, own: Part, feature: Feature, row: PartRow, stopped: Callable[[str, str], None]) -> None:
@@ -114,7 +114,7 @@ class AddedPart(Part, Observer):
             return call()
         except KeyboardInterrupt:
             raise
-        except BaseException as error:  # even SystemExit
+        except BaseException as error:  # the package's code may even raise SystemExit
             self._stop(error)
         return otherwise
 

@@ -20,7 +20,8 @@ RUN_BEFORE, ENGINE = "the run before", "the engine"
 class BrainPart(Part):
     """The part that runs the behaviour on a robot of this process.
 
-    `recover` returns how the behaviour begins: where the previous run ended, or from the start. `hold` is the robot's.
+    `recover` returns how the behaviour begins: where the previous run ended, or from the start. `hold` is the robot's
+    hold by a person; None if the robot is elsewhere.
     """
 
     name = BRAIN
@@ -103,5 +104,5 @@ class BrainPart(Part):
         self.behavior.loop.resume(self._regained(found))
 
     def _regained(self, found: Resumption) -> Resumption:
-        """Return what can be resumed on this robot, which no longer knows the unfinished commands."""
+        """Return the part of a resumption that is possible on this robot, which has lost the unfinished commands."""
         return found

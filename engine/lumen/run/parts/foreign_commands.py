@@ -14,7 +14,7 @@ WHO = "command"
 
 
 class ForeignCommands(CommandListener):
-    """A listener that reports a robot's commands from the bus, and the refused ones.
+    """A listener that reports a robot's commands from the bus, including the refused ones.
 
     `record` writes an entry of the journal.
     """

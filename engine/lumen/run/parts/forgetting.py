@@ -1,4 +1,4 @@
-"""The forgetting of a person in every process, after the memory module has forgotten them, also during their visit."""
+"""The forgetting of a person in every process, after the memory module has forgotten them, even during their visit."""
 
 import logging
 from collections import deque
@@ -14,18 +14,20 @@ from lumen.upkeep.drops import DropLog
 
 ROUTE = "forgotten"
 MAX_PENDING_NAMES = 100
-"""Names that may wait; further ones are dropped, which is reported."""
+"""The number of names that may wait; further ones are dropped, which is reported."""
 FORGETTING_SPACING = 2.0
-"""Time between two names [s]: each is searched for in all files, and a flood of names must not block the process."""
+"""The time between two names [s]: each is searched for in all files, and a flood of names must
+not block the process.
+"""
 
 _log = logging.getLogger(__name__)
 
 
 class ForgettingPart(Part):
-    """The part that makes this process forget a person: it calls each of `forget` with the name.
+    """The part that makes this process forget a person: it calls each function in `forget` with the name.
 
-    Names are handled one at a time, and a name that already waits is not queued again. The part precedes the brain, and
-    has the brain's `needs` if there is one.
+    Names are handled one at a time, and a name that already waits is not queued again. The part comes before the brain,
+    and has the brain's `needs` if there is a brain.
     """
 
     patient = True

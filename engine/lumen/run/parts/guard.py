@@ -9,14 +9,14 @@ from lumen.ports import Robot
 from lumen.run.presence import BRAIN, HERE, LEAVES, LOST_AFTER, ROBOT_PART, Peer, Presence, where_it_runs
 
 BRAIN_TIMEOUT = 5.0
-"""Silence of the brain after which its robot rests [s]."""
+"""The time without a sign of life of the brain after which its robot rests [s]."""
 
 
 class BrainGuard:
     """A watch over the brain that the robot follows.
 
-    When a brain comes back or replaces it, `notice` gets `brain.lost` with the time without one. If the robot's own
-    process was paused for so long that its brain lost it, the robot rests first.
+    When a brain comes back or replaces it, `notice` is called with `brain.lost` and the time without a brain. If the
+    robot's own process was paused for so long that its brain lost it, the robot rests first.
     """
 
     def __init__(
@@ -28,7 +28,7 @@ class BrainGuard:
         clock: Callable[[], float],
     ) -> None:
         self.follows = ""
-        """Session of the followed brain, or an empty string."""
+        """The session of the followed brain; empty if there is none."""
         self._robot, self._presence, self._notice, self._tell, self._clock = robot, presence, notice, tell, clock
         self._last: float | None = None
         self._resting = False

@@ -1,4 +1,4 @@
-"""A robot that is hosted on the bus, for the brain that comes first."""
+"""A robot that is hosted on the bus, for the first brain that comes."""
 
 import time
 from collections.abc import Callable, Mapping, Sequence
@@ -30,11 +30,11 @@ from lumen.upkeep.threads import WatchedThread
 class HostedRobotPart(RobotPart):
     """A robot whose brain is in another process; it rests if the brain is gone for long.
 
-    `noticed` is called with each event that the robot notices or answers.
+    `noticed` is called with each event that the robot notices, and each answer.
     """
 
     watches = False
-    """A brain in this process finds the robot on the bus, as it would in another one."""
+    """A brain in this process reaches the robot over the bus, as it would from another process."""
 
     def __init__(
         self,
@@ -59,7 +59,7 @@ class HostedRobotPart(RobotPart):
 
     @property
     def follows(self) -> str:
-        """The session of the brain that it obeys, or an empty string."""
+        """The session of the brain that it obeys; empty if there is none."""
         return self._guard.follows if self._guard else ""
 
     def stopped(self) -> bool:
@@ -138,7 +138,7 @@ class HostedRobotPart(RobotPart):
         return bool(own) and session == self.follows
 
     def tell(self, command: RobotCommand, id: str) -> None:
-        """Print a line for a command of the brain, unless a brain in this process has done so."""
+        """Print a line for a command of the brain, unless a brain in this process has printed it."""
         if BRAIN in self._others.parts or isinstance(command, Aim | Live) or not self.is_brains(id):
             return
         if isinstance(command, Perform | Record):
@@ -166,7 +166,7 @@ class _CommandsOfOthers(ForeignCommands):
 
 
 def stopped_there(presence: Presence) -> StoppedBy | None:
-    """Return who stopped a robot in this process or another one, from its presence; None if no one did."""
+    """Return who stopped a robot in this process or another one, from its presence; None if it is not stopped."""
     peer = presence.find(ROBOT_PART)
     said = peer.said if peer else {}
     try:

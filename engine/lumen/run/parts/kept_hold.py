@@ -24,7 +24,7 @@ class KeptHold(CommandListener):
             self._home.remove(STOPPED_FILE)
 
     def restore(self, hold: PersonHold) -> None:
-        """Hold the robot if the run before left it stopped."""
+        """Hold the robot if it was stopped when the previous run ended."""
         if before := kept_hold(self._home):
             hold.stop(before.by, before.since)
 

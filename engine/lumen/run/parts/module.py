@@ -24,7 +24,7 @@ def make_module(name: str, project: Project, bus: Bus, tell: Callable[[str], Non
     """Return a module that has not begun; its files are in `folder`, None for no files.
 
     Raises UsageError if there is no such module, ModuleError if it lacks something that it needs, LumenError with the
-    name of the installed package if its code is faulty.
+    name of the installed package if the package's code is faulty.
     """
     modules = table("modules")
     if name not in modules:
@@ -41,7 +41,7 @@ def make_module(name: str, project: Project, bus: Bus, tell: Callable[[str], Non
 
 
 EYES_TIMEOUT = 60.0
-"""Longest wait of a tick for the eyes on a busy machine [s]."""
+"""The longest wait of a tick for the eyes on a busy machine [s]."""
 OWN_OPTIONS = ("camera", "window", "robots")
 """Options of the eyes that apply only to the project's own robot."""
 
@@ -49,9 +49,9 @@ OWN_OPTIONS = ("camera", "window", "robots")
 class ModulePart(Part):
     """A module on a thread of its own; it needs no other part, and handles messages from any sender.
 
-    With `awaited` each tick waits for the eyes, so that what they see does not depend on the machine's speed. Eyes may
+    With `awaited` each tick waits for the eyes, so that their sightings do not depend on the machine's speed. Eyes may
     serve several robots (`Project.served`): then there is one module for each, visible to that robot's exhibition.
-    Faces learned for another robot are lost with the process. Raises ModuleError if it can't work here.
+    Faces learned for another robot are lost with the process. Raises ModuleError if the module can't work here.
     """
 
     def __init__(
@@ -109,7 +109,7 @@ class ModulePart(Part):
             presence.close()
 
     def _done(self, call: Callable[[], None]) -> bool:
-        """Call a method of a module; report the fault of another package, and return whether there was none."""
+        """Call a method of a module; report a fault of another package's code, and return False if there was one."""
         faults: list[Diagnostic] = []
         with faults_reported(owner("modules", self.name), f"its module `{self.name}`", faults):
             call()

@@ -10,11 +10,11 @@ from lumen.ports import Bus, Message
 from lumen.run.parts.part import Part
 
 MAX_PENDING_TROUBLES = 100
-"""Troubles that may wait for a tick; one more drops the oldest."""
+"""The number of troubles that may wait for a tick; one more drops the oldest."""
 
 
 class ModuleTroublesPart(Part):
-    """The part that prints the troubles of modules in other processes; those of this process, `own`, print theirs."""
+    """The part that prints the troubles of modules in other processes; `own` modules, of this process, print theirs."""
 
     patient = True
 

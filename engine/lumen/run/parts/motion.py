@@ -19,7 +19,7 @@ from lumen.run.tracking import LocalTracking
 from lumen.upkeep.threads import MessageGuard
 
 WAITING = 1_000
-"""Requests that may wait for a tick; one more drops the oldest."""
+"""The number of requests that may wait for a tick; one more drops the oldest."""
 
 _log = logging.getLogger(__name__)
 
@@ -27,8 +27,8 @@ _log = logging.getLogger(__name__)
 class MotionPart(Part):
     """The part that sends the robot the keyframes of the requested motions, and aims its head by the controllers.
 
-    Controllers go off when the brain is gone, and a brain that returns requests them again. They restart with another
-    robot.
+    If the brain is gone, the controllers are switched off, and a brain that returns requests them again. They restart
+    with another robot.
     """
 
     name = MOTION

@@ -51,12 +51,12 @@ DIRECT_ENTRY = "operator.goto"
 """The event of a step that an operator requested by `goto`."""
 EARS_LOST = f"{EARS}.lost"
 MAX_PENDING_REQUESTS = 100
-"""Requests that may wait for a tick; one more drops the oldest."""
+"""The number of requests that may wait for a tick; one more drops the oldest."""
 NOTHING_RECORDED = "the bus is not recorded: `record: {ring: 10min}` in lumen.yaml keeps the last 10 minutes"
 MAX_NOTE = 300
-"""Longest text of a mark or a note, in characters."""
+"""The greatest length of the text of a mark or a note [characters]."""
 MAX_STATE = 200
-"""Longest name of a state, in characters."""
+"""The greatest length of a state's name [characters]."""
 Responder = Callable[[Message, float], dict[str, Any]]
 """A function that answers a valid request at a time [s]."""
 
@@ -66,22 +66,22 @@ class RunState:
     """The state of the run, as functions that return it."""
 
     stopped: Callable[[], StoppedBy | None]
-    """Returns who stopped the robot, None if no one did."""
+    """Returns who stopped the robot; None if it is not stopped."""
     realtime: Callable[[], float]
-    """Returns the share of real time."""
+    """Returns the share of real time that the clock reaches."""
     reloaded: Callable[[], LastReload | None] = lambda: None
-    """Returns the last reload, None if there was none."""
+    """Returns the last reload; None if there was none."""
     modules: Callable[[], Sequence[Mapping[str, Any]]] = tuple
     """Returns the status of each of the project's own modules."""
 
 
 class OperatorPart(Part, Observer):
-    """The part that answers operators between two steps; it precedes the brain, and has the brain's `needs`.
+    """The part that answers operators between two steps; it comes before the brain, and has the brain's `needs`.
 
     Questions about the past (`lumen why`) are answered on another thread, from its `steps` and from the journal that
-    `journal` writes. `records` keeps journal entries and people's decisions. The folder `kept` has what outlasts the
-    run: whether the language model is silenced. `marking` returns the answer to a mark, which the recorder receives by
-    itself; it is empty if nothing is recorded.
+    `journal` writes. `records` writes journal entries and saves people's decisions. The folder `kept` has what outlasts
+    the run: whether the language model is silenced. `marking` returns the answer to a mark, which the recorder receives
+    by itself; it is empty if nothing is recorded.
     """
 
     patient = True
@@ -163,7 +163,7 @@ class OperatorPart(Part, Observer):
             elif request in (WHY, WHY_NOT):
                 self._answering.request(message)
             elif request is FORK:
-                from lumen.run.forking import forked  # imports the whole check of files
+                from lumen.run.forking import forked  # this imports the whole check of files
 
                 running = self._behavior.loop.runtime.project
                 self._answering.answer(message, partial(forked, self._journal, running, message.body))
@@ -242,7 +242,7 @@ class OperatorPart(Part, Observer):
         self._behavior.loop.runtime.note(**{what: words, "by": person_in(message)})
 
     def _goto(self, message: Message, now: float) -> dict[str, Any]:
-        """Enter a state; with `only: check` just return what that would leave and enter."""
+        """Enter a state; with `only: check` just return the states that would be left and entered."""
         state, by, only = message.body["state"][:MAX_STATE], person_in(message), message.body.get("only") == "check"
         loop = self._behavior.loop
         event = Event(DIRECT_ENTRY, {"by": by, "state": state}, now, cause=Cause("person", sender=by))

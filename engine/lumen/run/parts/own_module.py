@@ -20,23 +20,23 @@ from lumen.run.presence import HERE, LEAVES, PRESENCE_PERIOD, PRESENCE_ROUTE, PR
 from lumen.upkeep.supervised_process import END_TIMEOUT, SupervisedProcess
 
 DEFAULT_HEALTH = 5.0
-"""Longest time between two signs of life of a program, if lumen.yaml has none [s]."""
+"""The longest time between two signs of life of a program, if lumen.yaml does not set it [s]."""
 START_TIMEOUT = 30.0
-"""Longest time until the first sign of life of a program started here [s]; its `health` if that is longer."""
+"""The longest time until the first sign of life of a program started here [s]; its `health` if that is longer."""
 STEADY = 2.0
-"""Time that a program without signs of life must run after a loss to count as found [s]."""
+"""The time that a program without signs of life must run after a loss to count as found [s]."""
 MAX_PENDING_PRESENCES = 1_000
-"""Signs of life that may wait for a tick; one more drops the oldest."""
+"""The number of signs of life that may wait for a tick; one more drops the oldest."""
 BUS_VARIABLE, PROJECT_VARIABLE = "LUMEN_BUS", "LUMEN_PROJECT"
 ROBOT_VARIABLE, MODULE_VARIABLE = "LUMEN_ROBOT", "LUMEN_MODULE"
-"""The environment of a program that is started here: the bus, or without its address the project to find it by."""
+"""The environment variables of a program that is started here: the bus's address, or else the project to find it by."""
 
 
 class OwnModulePart(Part):
-    """The part that watches one program; `happen` gets `NAME.lost` and `NAME.found`.
+    """The part that watches one program; `happen` is called with `NAME.lost` and `NAME.found`.
 
-    It starts the program if lumen.yaml has `here: true`, or if it `starts`. `bus_url` is the address of the bus, empty
-    if only this machine can reach it. `clock` returns real time [s].
+    It starts the program if lumen.yaml has `here: true`, or if `starts` is set. `bus_url` is the address of the bus,
+    empty if only this machine can reach it. `clock` returns real time [s].
     """
 
     def __init__(
@@ -106,7 +106,7 @@ class OwnModulePart(Part):
         return self._process is not None and self._process.running
 
     def _supervise(self) -> str:
-        """Start the program when due, and print its lines; return why it ended, empty if it did not."""
+        """Start the program when it is due, and print its lines; return why it ended, else an empty string."""
         if self._process is None:
             return ""
         began = self._process.began
@@ -133,11 +133,11 @@ class OwnModulePart(Part):
                     self._heard, self._gone, self._known = clock, state == LEAVES, True
 
     def _alive(self, clock: float) -> bool:
-        """Return whether nothing indicates that the program is gone; one that has never appeared is only awaited."""
+        """Return whether the program may still be there; one that has never appeared is only awaited."""
         if self._process and not self._settings.health:
             return self._running or self._lost_at is None
         if self._gone and self._running:
-            return clock - self._heard <= END_TIMEOUT  # it has announced its end, and gets time for it
+            return clock - self._heard <= END_TIMEOUT  # the program has announced its end, and gets time for it
         if not self._known or self._gone:
             return not self._known
         health = self._settings.health or DEFAULT_HEALTH
@@ -154,7 +154,7 @@ class OwnModulePart(Part):
         return f"it sent no sign of life for {self._settings.health or DEFAULT_HEALTH:g} s"
 
     def _lose(self, reason: str, clock: float) -> None:
-        if self._running and self._process:  # it hangs, or lost its bus
+        if self._running and self._process:  # the program hangs, or has lost its bus
             self._process.restart()
         if self._lost_at is not None:
             return
@@ -165,7 +165,7 @@ class OwnModulePart(Part):
         self._happen(Event(f"{self.name}.lost", {"seconds": seconds, "reason": reason}))
 
     def _find(self, clock: float) -> None:
-        """Note that the program is there; after a loss only once it sends a sign of life, or has run for STEADY."""
+        """Record that the program is there; after a loss it must first send a sign of life, or run for STEADY."""
         if self._lost_at is None:
             self._alive_at = clock
             return

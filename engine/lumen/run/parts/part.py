@@ -10,15 +10,15 @@ from lumen.run.resuming import FreshStart, Resumption
 
 
 class Part:
-    """Something in a node's loop; it begins when the parts that it `needs` are there.
+    """A part of a node's loop; it begins when the parts that it `needs` are there.
 
     A method that a subclass does not override does nothing.
     """
 
     name = ""
-    """The role that it gives its process, empty for none."""
+    """The role that it gives its process; empty for none."""
     needs: Sequence[str] = ()
-    """Parts that must be there before it begins."""
+    """The names of the parts that must be there before it begins."""
     patient = False
     """Whether it only waits for inputs, which may be delayed by NAP."""
     watches = False
@@ -45,19 +45,19 @@ class Part:
         return {}
 
     def begin(self, now: float) -> None:
-        """Called at `now` [s], when what it needs is there."""
+        """Called at `now` [s], when the parts that it needs are there."""
 
     def recovered(self, found: Resumption | FreshStart) -> None:
-        """Called with how the behaviour begins, and so how the previous run ended."""
+        """Called with the way in which the behaviour begins, which depends on the end of the previous run."""
 
     def tick(self, now: float, changes: Sequence[Event]) -> None:
         """Run until `now` [s]; `changes` are the losses and returns of other processes."""
 
     def noticed(self, event: Event) -> None:
-        """Called with an event of a robot in this process whose brain is in another one or missing."""
+        """Called with an event of a robot in this process whose brain is in another process or missing."""
 
     def quiet_until(self, now: float) -> float:
-        """Return until when nothing happens in it without an input [s]; `now` if that is unknown."""
+        """Return until when nothing happens in the part without an input [s]; `now` if something may happen at once."""
         return inf if self.patient else now
 
     def leap(self, now: float) -> None:
@@ -80,7 +80,7 @@ class Part:
         """
 
     def marking(self) -> str:
-        """Return what the part keeps of the minutes around a mark that an operator set now; empty for nothing."""
+        """Return what the part saves of the minutes around a mark that an operator has just set; empty for nothing."""
         return ""
 
     def summary(self) -> Iterator[str]:

@@ -25,7 +25,7 @@ from lumen.run.setup import Setup
 from lumen.run.tracking import LocalTracking
 
 SESSION = "brain.json"
-"""File with the sessions of a brain's commands, for a brain that resumes the run."""
+"""The file with the sessions of a brain's commands, for a brain that resumes the run."""
 GONE = "the connection to the robot is lost"
 
 
@@ -55,7 +55,7 @@ class RemoteBody:
         adopt: Callable[[Project], None],
         refuse: Callable[[RobotCommand], str] = lambda _: "",
     ) -> LiveBehavior:
-        """Return the behaviour on this robot; as for the robot, an absence is measured in real time."""
+        """Return the behaviour on this robot; its gaps between ticks count in real time, as the robot counts them."""
         setup = Setup(self.robot, self._clock, None, tracking=self.tracking)
         found = LiveBehavior(project, setup, bus, story, adopt=adopt, refuse=refuse)
         found.loop.patience *= speed
@@ -71,7 +71,7 @@ class RemoteBody:
 
 
 class RemoteHold(Observer):
-    """A predictor of whether a robot in another process refuses to move because a person stopped it.
+    """Predicts whether a robot in another process refuses to move because a person stopped it.
 
     `stopped` returns the state that the robot's process publishes, which may be a second old. In doubt a command is
     sent, and the robot decides. A touch of the robot's head allows movement again.
@@ -127,7 +127,7 @@ class RemoteBrainPart(BrainPart):
         super().tick(now, changes)
 
     def rest(self, by: str) -> None:
-        """Make the robot rest, which reports that to the behaviour; without a robot, raise `stop` here."""
+        """Make the robot rest, which the robot reports to the behaviour; without a robot, raise `stop` here."""
         if self._others.find(ROBOT_PART) is None:
             self.behavior.loop.happen(Event("stop", {"by": by}))
         self.robot.start("operator", Rest(by))
@@ -136,14 +136,14 @@ class RemoteBrainPart(BrainPart):
         self.robot.close()
 
     def _regained(self, found: Resumption) -> Resumption:
-        """Request the robot's answers to unfinished commands, and keep only those as lost whose session is unknown."""
+        """Request the robot's answers to unfinished commands; only those of unknown sessions stay lost."""
         self._earlier = self._sessions(found.lost)
         for id, session in self._earlier.items():
             self.robot.recover(session, [id])
         return found._replace(lost=tuple(id for id in found.lost if id not in self._earlier))
 
     def _sessions(self, ids: Sequence[str]) -> dict[str, str]:
-        """Return the sessions under which these commands were sent: of the last brain, or of an earlier one."""
+        """Return the sessions under which these commands were sent: that of the last brain, or of an earlier one."""
         data: Any = self._home.read_json(SESSION) if self._home else None
         match data:
             case {"session": str(last), **more}:
@@ -153,7 +153,7 @@ class RemoteBrainPart(BrainPart):
         return {}
 
     def _follow(self) -> None:
-        """Check which robot is there and which brain it follows. Raises BusRefusedError if that is another one."""
+        """Handle another robot, and raise BusRefusedError if the robot follows another brain."""
         robot = self._others.find(ROBOT_PART)
         if robot is None:
             return

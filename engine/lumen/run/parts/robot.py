@@ -32,7 +32,7 @@ class RunBefore:
     kept: KeptHold | None = None
     """Holds the robot if a person had stopped it."""
     begun: Path | None = None
-    """File of the commands that must not be performed again."""
+    """The file of the commands that must not be performed again."""
 
 
 NO_RUN = RunBefore()
@@ -43,7 +43,7 @@ class RobotPart(Part, Observer):
 
     `listeners` are notified of commands from elsewhere. The part observes the brain's loop, and publishes the robot's
     speech and answers. On a bus of its own a tick waits until the readings are published, so that runs are
-    reproducible, and publishes them itself at unlimited speed. A `silent` robot publishes only the senses that the
+    reproducible; at unlimited speed the tick publishes them itself. A `silent` robot publishes only the senses that the
     behaviour uses, as events or in controllers.
     """
 
@@ -87,7 +87,7 @@ class RobotPart(Part, Observer):
         self._look(now)
 
     def quiet_until(self, now: float) -> float:
-        """Return when a sense is next due; `now` while the robot, a face or a waiting command needs every tick."""
+        """Return when a sense is next due [s]; `now` while the robot, a face or a waiting command needs every tick."""
         server = self.server  # if silent, only controllers read senses, and the brain ticks for them
         if server.waiting or (self.faces and self.faces.busy) or not is_idle(self.robot):
             return now
@@ -112,7 +112,7 @@ class RobotPart(Part, Observer):
 
     @property
     def said(self) -> dict[str, str]:
-        """The fields that it adds to its presence: none."""
+        """The fields that it adds to the presence: none."""
         return {}
 
     def summary(self) -> Iterator[str]:
@@ -160,6 +160,6 @@ class Urgency(CommandListener):
 
 
 def _counted(item: tuple[str, PublishCounts]) -> str:
-    """Return a count of published readings, as `1204 joint (3 dropped)`."""
+    """Return a count of published readings, such as `1204 joint (3 dropped)`."""
     sense, count = item
     return f"{count.published} {sense}" + (f" ({count.dropped} dropped)" if count.dropped else "")

@@ -22,9 +22,9 @@ from lumen.run.visitor import VisitorActor
 
 
 class VisitorPart(Part):
-    """A visitor in a hall of this process; `player` plays the story, if there is one, in `environment`.
+    """A visitor in a hall of this process; `player` plays the story in `environment`, None without a story.
 
-    `tell` is called with what the visitor does in the story.
+    `tell` is called with each action of the visitor in the story.
     """
 
     name = VISITOR
@@ -66,7 +66,7 @@ class VisitorPart(Part):
 class RemoteVisitorPart(VisitorPart):
     """A visitor in a hall that is simulated in another process.
 
-    With `telling` the transcript here shows what the visitor sees of the robot, because no brain in this process does.
+    With `telling` the transcript here shows what the robot does, because no brain in this process shows it.
     """
 
     needs = (ROBOT_PART, BRAIN)

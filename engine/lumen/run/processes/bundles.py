@@ -1,4 +1,4 @@
-"""Files of the other processes, which follow the brain's: a bundle that it activates is loaded here too."""
+"""The files of the other processes, which follow the brain's: a bundle that the brain activates is loaded here too."""
 
 import queue
 import sys
@@ -19,14 +19,14 @@ from lumen.run.watcher import SWITCH_INTERVAL
 from lumen.upkeep.threads import WatchedThread
 
 MOVED = ("applied", "rolled back")
-"""Verdicts after which the brain runs another bundle."""
+"""The verdicts after which the brain runs another bundle."""
 
 
 class BundleFollower(Part):
     """The part that loads the bundles which the brain of the project's robot activates, on its own thread.
 
-    `use` is called with each loaded bundle, `tell` with a line if the files here differ from the brain's: another
-    machine may have others.
+    `use` is called with each loaded bundle, `tell` with a line about it, or about files here that differ from the
+    brain's, as on another machine.
     """
 
     patient = True
@@ -61,7 +61,7 @@ class BundleFollower(Part):
             self._wanted.put(body["after"])
 
     def _run(self) -> None:
-        from lumen.lint import check_files  # imports all rules, which a single process does not need here
+        from lumen.lint import check_files  # this imports all rules, which a single process does not need here
 
         missed = ""
         while (wanted := self._latest()) is not None:
@@ -90,7 +90,7 @@ class BundleFollower(Part):
         return as_robot(kept, self._robot) if kept else None
 
     def _latest(self) -> str | None:
-        """Wait for a wanted hash; return the newest, None at the end."""
+        """Wait for a wanted hash; return the newest one, None at the end."""
         wanted = self._wanted.get()
         while wanted is not None and not self._wanted.empty():
             wanted = self._wanted.get()

@@ -9,9 +9,10 @@ from lumen.run.presence import BRAIN, ROBOT_PART, all_parts, roles
 
 
 def parts_of(only: str | None, robot: str, modules: Mapping[str, ModuleSettings]) -> tuple[str, ...]:
-    """Return the parts that this process runs, none for a whole exhibition. Raises UsageError for an invalid choice.
+    """Return the parts that this process runs; none for a whole exhibition. Raises UsageError for an invalid choice.
 
-    `modules` are those of lumen.yaml; the programs of the project's own are parts, too.
+    `only` has names separated by commas. `modules` are those of lumen.yaml; the programs of the project's own are
+    parts, too.
     """
     if only is None:
         return tuple(part for part in roles() if part != ROBOT_PART) if robot == "remote" else ()

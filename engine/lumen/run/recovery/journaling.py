@@ -16,7 +16,7 @@ from lumen.run.snapshot_store import SnapshotStore
 from lumen.upkeep.own_folders import private_folder
 
 REHEARSED = JournalRetention(keep=7.0, size=50.0)
-"""Limits for kept runs by stories and programs."""
+"""The limits for recorded runs by stories and programs."""
 
 
 def record_inputs(
@@ -24,7 +24,7 @@ def record_inputs(
 ) -> JournalWriter:
     """Record a behaviour's inputs from now on; return the writer of the journal.
 
-    Visits are kept in the home of the run that holds it. Runs by a story or a program are `rehearsed` and kept in a
+    The journal of visits is in the home, if this run holds it. Runs by a story or a program are `rehearsed`, and in a
     separate folder, so that they do not replace visits. If the project wants no journal, only the last part is kept, in
     memory, and the existing files are deleted.
     """
@@ -36,7 +36,7 @@ def record_inputs(
 
 
 def _files(project: Project, *, rehearsed: bool) -> JournalFolder | None:
-    """Return the folder of the journal, None if it is not kept."""
+    """Return the folder of the journal; None if no journal is written."""
     retention = wanted = project.section(JournalRetention)
     folder = home_of(Path(project.root), project.one_of_several) / JOURNAL_FOLDER
     if rehearsed:
@@ -58,6 +58,6 @@ def _keep_files(project: Project) -> None:
         files = read_files(root, project.one_of_several)
         private_folder(home.folder)
     except (OSError, LumenError):
-        return  # without them the run can't be replayed, but it continues
+        return  # without the files the run can't be replayed, but it continues
     if fingerprint(files) == project.hash:
         SnapshotStore(home).store(files)

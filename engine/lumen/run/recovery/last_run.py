@@ -13,7 +13,7 @@ def last_run(root: Path, robot: str) -> dict[str, Any]:
     """Return the state of a robot that does not answer, as JSON data; `root` is the project's folder.
 
     `held` is whether a process of this machine still has its home. `ended` is the last known moment of its last run
-    (ISO 8601), None if unknown. `told` is whether the system had ordered that end.
+    (ISO 8601), None if unknown. `told` is whether the operating system had ordered that end.
     """
     home = Home(home_of(root, robot))
     kept, stopped = SnapshotStore(home).kept(), kept_hold(home)

@@ -19,7 +19,7 @@ from lumen.run.snapshot_store import SNAPSHOT_VERSION, SnapshotStore, StoredSnap
 from lumen.statechart import deserialize
 
 LATELY = 600.0
-"""Age of a snapshot up to which it is resumed [s]; after that the visitor has left."""
+"""The age of a snapshot up to which it is resumed [s]; after that the visitor has left."""
 
 AT_REST = "The robot was at rest, and stays at rest until you hold its head or run `lumen resume`."
 
@@ -27,14 +27,19 @@ _UNKNOWN = Refusal("its files were not kept")
 
 
 class Recovery(NamedTuple):
-    """How a run continues or begins, with the reports of a reload that this was."""
+    """How a run continues or begins."""
 
     how: Resumption | FreshStart
+    """The resumption, or the fresh start."""
     news: tuple[ReloadReport, ...] = ()
+    """The reports of the reloads that the start was."""
 
 
 def recover(root: Path, records: RunRecords, project: Project) -> Recovery:
-    """Return how the run in these records of the project in `root` continues under `project`, or why it begins anew."""
+    """Return how the run in these records continues under `project`, or why it begins anew.
+
+    `root` is the project's folder.
+    """
     keeper = records.keeper
     kept = keeper.kept() if keeper else None
     if keeper is None or kept is None:
@@ -59,12 +64,12 @@ def recover(root: Path, records: RunRecords, project: Project) -> Recovery:
 
 
 def how_ended(kept: StoredSnapshot) -> str:
-    """Return how a run ended, as `ended unexpectedly`, for a line to a person."""
+    """Return how a run ended, `was ended` or `ended unexpectedly`, for a line to a person."""
     return "was ended" if kept.told else "ended unexpectedly"
 
 
 def rested(records: RunRecords) -> FreshStart:
-    """Return a beginning that ignores the previous run, except that the robot stays at rest if it was."""
+    """Return a beginning that ignores the previous run, except that a robot at rest stays at rest."""
     kept = records.keeper.kept() if records.keeper else None
     rests = kept.rests if kept else bool(records.keeper and records.keeper.of_another_version()[1])
     return FreshStart(AT_REST if rests else "", rests)
@@ -92,7 +97,7 @@ def _resumed(old: Project, new: Project, kept: StoredSnapshot, away: float) -> R
 
 
 def _before(root: Path, keeper: SnapshotStore, kept: StoredSnapshot, project: Project) -> Project | None:
-    """Return the bundle that ran, None if it was not kept. Raises ProjectError if this version can't read it."""
+    """Return the bundle that ran; None if it was not kept. Raises ProjectError if this version can't read it."""
     old: Project | None = project
     if kept.bundle != project.hash:
         files = keeper.files(kept.bundle)

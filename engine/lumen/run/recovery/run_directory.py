@@ -30,13 +30,14 @@ _log = logging.getLogger(__name__)
 class RunDirectory:
     """The home of the project in `root`, or of its `robot`, while this run holds it.
 
-    A process without a brain is a `guest`, and leaves the home to the process that has one.
+    A process without a brain is a `guest`, and leaves the home to the process that has one. `taken` is whether another
+    run holds the home.
     """
 
     def __init__(self, root: Path, robot: str = "", *, guest: bool = False) -> None:
         self.root, self.robot, self.taken = root, robot, False
         self.home: Home | None = None
-        """The held home, None if another run holds it or it can't be used."""
+        """The held home; None if another run holds it or it can't be used."""
         home = Home(home_of(root, robot))
         try:
             if guest:
@@ -50,12 +51,14 @@ class RunDirectory:
         self.records = RunRecords(self.home)
         self._ended = False
         self.news: list[ReloadReport] = []
-        """Reports of the reloads that this start was, published once the bus is open."""
+        """Reports of the reloads that this start was; they are published once the bus is open."""
         self._door: LocalBusServer | None = None
         self._bus = ""
 
     def begin(self, project: Project, files: Mapping[str, bytes]) -> None:
-        """Store the files that the exhibition starts with; without good ones so far they become the last good ones."""
+        """Store the files with which the exhibition starts; if no files were good so far, they count as the last good
+        ones.
+        """
         if keeper := self.records.keeper:
             kept, good = keeper.kept(), keeper.good()
             keeper.store(files)
@@ -64,7 +67,7 @@ class RunDirectory:
             keeper.prune(project.hash, good, kept.bundle if kept else "")
 
     def ended(self, project: Project) -> None:
-        """Note that the exhibition ended normally with these files."""
+        """Record that the exhibition ended normally with these files."""
         self._ended = True
         self.records.annul()
         if not self.records.died(project.hash):
@@ -112,7 +115,7 @@ class RunDirectory:
         self.announce(project)
 
     def announce(self, project: Project) -> None:
-        """Write down the address of this run, and the keys on which its robot receives commands."""
+        """Save the address of this run, and the keys on which its robot receives commands."""
         if self.home is None:
             return
         address = self._door.address if self._door else None
@@ -147,7 +150,7 @@ class RunDirectory:
         home.release()
 
     def last_good(self) -> Project | None:
-        """Return the last good bundle that ran, None if none was kept.
+        """Return the last good bundle that ran; None if none was kept.
 
         It is loaded in another process, because files may crash the process that reads them.
         """

@@ -1,4 +1,4 @@
-"""The files that a start uses: the present ones, or the last good ones if those can't be used."""
+"""The files with which a run starts: the present ones, or the last good ones if those can't be used."""
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -23,7 +23,7 @@ def startup_project(
 
     The last good one is used if the project has errors and `last_good` is set, or if it crashed at several starts.
     `warn` is called with lines for the operator. Files are first read in another process, because they may crash it.
-    Raises ProjectError or FatalFilesError if there is none to start with.
+    Raises ProjectError or FatalFilesError if neither can be used.
     """
     files = read_files(root, run_directory.robot)
     try:
@@ -54,7 +54,7 @@ def _last_good(
     error: ProjectError | FatalFilesError,
     warn: Callable[[str], None],
 ) -> Project:
-    """Return the last good project, used in place of files that can't be, and warn about it."""
+    """Return the last good project in place of files that can't be used, and warn about that."""
     if isinstance(error, ProjectError):
         warn(_instead_of_yours("THE FILES HAVE ERRORS"))
         return _instead(run_directory, good, hash, "", error.diagnostics)
