@@ -59,9 +59,7 @@ class Performer:
     ) -> None:
         self._robot, self._bus, self._track = robot, bus, track
         self.events: list[Event] = []
-        """Answers for the next tick, to commands that end at once, need a part that the body lacks,
-        or may not begin.
-        """
+        """Answers for the next tick, to commands that end at once, need a part that is missing, or may not begin."""
         self.navigator = Navigator(robot, self._begin)
         """Splits walks to places into single walks."""
         self.questions = questions or Questions(bus)

@@ -175,9 +175,7 @@ class Questions:
         return Event(f"done.command.{id}", None, now)
 
     def _raised(self, id: str, offers: Mapping[str, Any], raised: Any, now: float) -> Event:
-        """Return the event that a language model raises, if it was offered and its data is valid;
-        else an error event.
-        """
+        """Return the event that a language model raises, if it was offered and its data is valid; else an error."""
         match raised:
             case {"event": str(event), "data": dict(data)} if event in offers:
                 if JsonSchema({"type": "object", **(offers[event] or {})}).fits(data):

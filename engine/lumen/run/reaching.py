@@ -111,9 +111,7 @@ def _robot(root: Path, found: dict[str, Any] | None, home: str) -> str:
 
 
 def _keys(root: Path, found: dict[str, Any] | None, home: str) -> tuple[str, str]:
-    """Return the keys for commands and stops from the exhibition, else from lumen.yaml, even if
-    that file has errors.
-    """
+    """Return the keys for commands and stops from the exhibition, else from lumen.yaml, even if it has errors."""
     if found and isinstance(found.get("command"), str) and isinstance(found.get("stop"), str):
         return found["command"], found["stop"]
     settings = main_settings(root, home)

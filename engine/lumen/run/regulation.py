@@ -1,4 +1,4 @@
-"""Controllers that move no joints: messages and the context are their inputs, signals and events their outputs."""
+"""Controllers that move no joints: their inputs are messages and the context, their outputs signals and events."""
 
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
@@ -15,10 +15,12 @@ from lumen.statechart import Snapshot
 
 
 class Regulated(NamedTuple):
-    """The output of controllers: commands to perform, and events to raise."""
+    """The output of controllers."""
 
     commands: tuple[Command, ...]
+    """Commands to perform."""
     events: tuple[Event, ...]
+    """Events to raise."""
 
 
 class Regulation:
@@ -36,7 +38,7 @@ class Regulation:
         self.reload(project)
 
     def reload(self, project: Project) -> None:
-        """Switch to another bundle; a controller that is on and has changed keeps its inputs and past outputs."""
+        """Switch to another bundle; a changed controller that is on keeps its inputs and past outputs."""
         self._project = project
         for name, before in list(self._on.items()):
             controller = project.controllers.get(name)
@@ -48,7 +50,7 @@ class Regulation:
         self._listen()
 
     def switch(self, track: Track) -> None:
-        """Switch a controller on or off; ignore one that is on already, or that only moves joints."""
+        """Switch a controller on or off; ignore one that is already on, and one that only moves joints."""
         if not track.on:
             self._on.pop(track.controller, None)
         elif track.controller not in self._on:
@@ -92,7 +94,7 @@ def whole_fields(project: Project) -> frozenset[RouteField]:
 
 
 def _schema(project: Project, field: RouteField) -> Mapping[str, Any]:
-    """Return the schema of a message field, or an empty one."""
+    """Return the schema of a message field, else an empty one."""
     route, *path = field
     row = project.routes.get(route)
     schema = schema_at(project.messages.get(row.schema) if row else None, path)

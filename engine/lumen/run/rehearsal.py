@@ -23,7 +23,7 @@ from lumen.run.story import StoryFailure, StoryPlayer
 from lumen.run.story_observations import UnmetExpectation
 
 REMEMBERED = 12
-"""Last lines of the transcript that are kept for a failure."""
+"""The number of lines of the transcript that are kept for a failure, the last ones."""
 
 
 @dataclass(frozen=True)
@@ -32,19 +32,19 @@ class Rehearsal:
 
     story: Story
     time: float
-    """Simulated duration [s]."""
+    """The simulated duration [s]."""
     took: float
-    """Duration on this machine [s]."""
+    """The duration on this machine [s]."""
     failed: StoryFailure | None = None
-    """How it failed, None if it did not."""
+    """The way in which it failed; None if it did not."""
     place: Place | None = None
-    """Place of the failed step in the story's file."""
+    """The place of the failed step in the story's file; None if it did not fail."""
     trace: tuple[tuple[float, str, str], ...] = ()
     """The transcript, after a failure or on request: time [s], who, and what."""
 
 
 class RehearsalTrace(Narrator):
-    """A narrator that keeps the last `remembered` lines, None for all: time [s], who, and what."""
+    """A narrator that keeps the last `remembered` lines, or all lines if that is None: time [s], who, and what."""
 
     explains = True
 
@@ -72,8 +72,8 @@ def rehearse(
 
     The recording robot does not publish joints and pictures, which no behaviour uses, and skips ticks in which nothing
     happens. `observers` watch the run; `hooks` are called at each tick with its time [s]. The story fails if the
-    behaviour does not come to rest, if the engine logs an error, or after a LumenError, which is not raised; warnings
-    are added to the trace, which is complete with `whole` and else has the last lines before a failure. With
+    behaviour does not come to rest, if the engine logs an error, or after a LumenError, which is not raised. The trace
+    also has logged warnings; it is complete with `whole`, else it has the last lines before a failure. With
     `real_skills` the recording robot runs the code of skills.
     """
     setup = chosen or set_up("recording", project, "max", story, real_skills=real_skills)
@@ -113,7 +113,7 @@ def rehearse(
 class _Log(logging.Handler):
     """A log handler that copies the engine's log to the trace; an error fails the story.
 
-    During a running exhibition, only this thread's records belong to the story, and all others to the exhibition.
+    Beside a running exhibition, only the records of this thread belong to the story, and all others to the exhibition.
     """
 
     def __init__(self, player: StoryPlayer, trace: RehearsalTrace) -> None:
@@ -136,7 +136,7 @@ class _Log(logging.Handler):
 
 @contextmanager
 def _logged(player: StoryPlayer, trace: RehearsalTrace) -> Iterator[None]:
-    """Send the engine's log to the story only, until the context ends."""
+    """Redirect the engine's log to the story until the context ends."""
     log, handler = logging.getLogger("lumen"), _Log(player, trace)
     others = [*logging.getLogger().handlers, logging.lastResort] if handler.thread else []
     before, log.propagate = log.propagate, bool(handler.thread) and log.propagate

@@ -1,4 +1,4 @@
-"""The journal of reloads: what, when, by whom and with what result, a line of JSON each, of bounded size."""
+"""The journal of reloads: when, by whom and with what result, a line of JSON each, of bounded size."""
 
 import json
 import logging
@@ -19,13 +19,13 @@ _log = logging.getLogger(__name__)
 
 JOURNAL_FILE = "journal.jsonl"
 MAX_JOURNAL_BYTES = 1_000_000
-"""Size after which a new file is begun [bytes]; only the one before is kept."""
+"""The size after which a new file is begun [bytes]; only the file before it is kept."""
 
 
 class Journal:
     """A writer of entries to `journal.jsonl` in a folder; without a folder they are dropped.
 
-    A line is written as a whole. If the disk is full, the entry is lost without an error.
+    A line is written as a whole. If writing fails, as on a full disk, the entry is lost without an error.
     """
 
     def __init__(self, folder: Path | None) -> None:
@@ -55,7 +55,7 @@ class Journal:
             _log.warning("the journal still contains data of a visitor that should be deleted: %s", error)
 
     def entries(self) -> Iterator[dict[str, Any]]:
-        """Yield all kept entries, the oldest first, without lines that a crash cut off."""
+        """Yield all entries that are still there, the oldest first, without lines that a crash cut off."""
         if self._file is None:
             return
         for file in (self._file.with_suffix(".jsonl.1"), self._file):

@@ -8,13 +8,13 @@ from lumen.ports import Bus
 from lumen.run.reload.requests import COMMAND, command_key
 
 STOP_TIMEOUT = 10.0
-"""Longest time that the robot needs to rest, even with a foot in the air [s]."""
+"""The longest time that the robot needs to rest, even with a foot in the air [s]."""
 TAKEN = "command finished"
 """A robot's answer after it has executed a command."""
 
 
 def rest_body(by: str) -> dict[str, Any]:
-    """Return the command to rest, in the name of `by`, for the robot's key `stop`; the robot notifies the behaviour."""
+    """Return the command to rest on behalf of `by`, for the robot's key `stop`; the robot notifies the behaviour."""
     return {"type": "motion", "method": "rest", "parameter": {"by": by}}
 
 
@@ -24,7 +24,7 @@ def resume_body(by: str) -> dict[str, Any]:
 
 
 def stop_behavior(bus: Bus, robot: str) -> None:
-    """Stop the behaviour if its robot does not answer; without a bus the message is lost."""
+    """Stop the behaviour if its robot does not answer; if the bus is gone, the message is lost."""
     for key in (command_key(robot), COMMAND):
         with suppress(BusError):
             bus.publish(key, {"command": "stop"})

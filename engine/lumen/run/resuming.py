@@ -19,7 +19,7 @@ class FreshStart(NamedTuple):
     """A run that does not continue the previous one."""
 
     why: str = ""
-    """The reason, empty if there is nothing to report."""
+    """The reason; empty if there is nothing to report."""
     rests: bool = False
     """Whether the robot was at rest, and stays so until a person lets it move."""
     crashed: bool = False
@@ -27,25 +27,25 @@ class FreshStart(NamedTuple):
 
 
 class Resumption(NamedTuple):
-    """How a behaviour resumes."""
+    """The state from which a behaviour resumes."""
 
     snapshot: Snapshot
     """The snapshot to continue from."""
     away: float
-    """Time for which the engine was away [s]."""
+    """The time for which the engine was away [s]."""
     commands: tuple[Command, ...] = ()
     """Commands to perform first."""
     lost: tuple[str, ...] = ()
-    """Ids of the unfinished commands."""
+    """The ids of the unfinished commands."""
     tracking: tuple[str, ...] = ()
-    """Controllers that were on."""
+    """The controllers that were on."""
     notes: tuple[str, ...] = ()
-    """Sentences about what may be missed."""
+    """Sentences about values or states that were lost."""
     told: bool = False
-    """Whether the system had ordered the end."""
+    """Whether the operating system had ordered the end."""
 
     def answers(self, now: float) -> list[Event]:
-        """Return an answer for each unfinished command, which the robot no longer knows."""
+        """Return an answer for each unfinished command, which the robot has lost."""
         return [Event(f"lost.command.{id}", {"reason": LOST_COMMAND_REASON}, now) for id in self.lost]
 
 
@@ -55,8 +55,8 @@ def resume(
     """Return how `new` continues from a snapshot of `old` at time 0 of a new clock, or why it can't.
 
     The engine was away for `away` [s], during which timers ran on; before that, the snapshot had not changed for
-    `unchanged` [s]. Newer files are applied like a reload that does not wait, because what was under way has ended
-    anyway.
+    `unchanged` [s]. `tracking` are the controllers that were on. Newer files are applied like a reload that does not
+    wait, because all actions under way have ended anyway.
     """
     later = retimed(paused(snapshot, away)._replace(at=snapshot.at + unchanged + away), 0.0, "remaining")
     verdict = MigrationPlan(later) if old is new else plan(old, new, later, now=True)
@@ -67,7 +67,7 @@ def resume(
 
 
 def anew(project: Project, snapshot: Snapshot, now: float) -> MigrationPlan:
-    """Return how a project begins anew at `now` [s], keeping the values of the snapshot's context that still fit."""
+    """Return how a project begins anew at `now` [s]; context values of the snapshot stay if they still fit."""
     checks = type_checks(project.machine)
     kept = {key: value for key, value in snapshot.context.items() if key in checks and fits(value, checks[key])}
     language = snapshot.language if snapshot.language in project.languages else project.languages[0]
@@ -80,7 +80,7 @@ def anew(project: Project, snapshot: Snapshot, now: float) -> MigrationPlan:
 
 
 def _awaited(snapshot: Snapshot) -> Iterator[str]:
-    """Yield the external ids of unfinished commands, without waits."""
+    """Yield the ids of unfinished commands, as the robot receives them."""
     for position in snapshot.doing.values():
         yield from (id for id in awaited(position) if id.startswith("d"))
     for owner, child in snapshot.invoked.items():

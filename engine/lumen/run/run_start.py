@@ -19,7 +19,7 @@ from lumen.run.recovery.startup import startup_project
 WHOLE = (ROBOT_PART, BRAIN)
 """The parts that every exhibition in one process has."""
 OUTSIDE = (BusError, RobotError, ModuleError)
-"""Errors of the environment: the files are not to blame, so the next start does not count them as a crash."""
+"""Errors of the environment: the files are not their cause, so the next start does not count them as a crash."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,26 +31,26 @@ class RunFailure:
     text: str
     """A description, with only a place and a code from the files."""
     root: Path
-    """Folder of the project."""
+    """The folder of the project."""
     name: str
-    """Name of the project."""
+    """The name of the project."""
     robot: str
-    """Names of the robots that ended, separated by commas."""
+    """The names of the robots that ended, separated by commas."""
     parts: tuple[str, ...]
     """The parts that the process had."""
     settings: Settings | None
-    """The settings that could be read, None if none could."""
+    """The settings that could be read; None if none could."""
     last_good: Callable[[], Project | None]
-    """Returns the last good project."""
+    """Returns the last good project; None if there is none."""
     tell: Callable[[str], None]
-    """Prints alerts that could not be sent, and why."""
+    """Prints a line, such as why an alert could not be sent."""
 
 
 class Failures:
     """Reports to people of errors that end a run, or one robot of it; `close` waits until they are sent.
 
-    A UsageError is only for the person at the terminal. `tell` is called with what could not be sent, and why. Without
-    `wanted` nothing is sent, as for stories.
+    A UsageError is only for the person at the terminal. `tell` is called with the reason if a report can't be sent.
+    Without `wanted` nothing is sent, as for stories.
     """
 
     def __init__(
@@ -67,7 +67,7 @@ class Failures:
         self._waiting: list[Callable[[], None]] = []
 
     def report(self, error: Exception, robots: Sequence[str]) -> None:
-        """Report an error that ended these robots; one of the environment does not count as a crash."""
+        """Report an error that ended these robots; an error of the environment does not count as a crash."""
         if self._wanted and not isinstance(error, UsageError | BrokenPipeError):  # the latter: the reader has gone
             for feature, where in rows("failures"):
                 try:
@@ -103,9 +103,9 @@ class BegunRun:
 
     root: Path
     directories: Mapping[str, RunDirectory]
-    """Homes by robot; the name is empty if the project has one robot."""
+    """The homes, by robot; the name is empty if the project has one robot."""
     projects: Mapping[str, Project]
-    """Bundles by robot."""
+    """The bundles, by robot."""
     failures: Failures
     """Reports errors that end the run."""
 
@@ -122,8 +122,8 @@ def started(
 ) -> Iterator[BegunRun]:
     """Hold the homes of these robots, finish an interrupted installation, and read the files.
 
-    The homes are released at the end. An error before or during the run is raised again, and reported to the people in
-    `alerts` if `alerted`.
+    The homes are released at the end. An error before or during the run is reported to the people in `alerts` if
+    `alerted`, and raised again.
     """
     guest = bool(parts) and BRAIN not in parts
     names = tuple(robots) or ("",)

@@ -21,18 +21,22 @@ _log = logging.getLogger(__name__)
 
 
 class Emission(NamedTuple):
-    """Commands, and the number of the step that emitted them."""
+    """Commands, and the number of the step that issued them."""
 
     step: int
     commands: Sequence[Command]
 
 
 Rescue = Callable[[Exception], Sequence[Command] | None]
-"""Called after a failure: switches to another bundle and returns the commands for that; None if it can't."""
+"""Called after a failure: switches to another bundle and returns the commands of the switch; None
+if it can't switch.
+"""
 
 
 class InputRecorder(Protocol):
-    """A recorder of a behaviour's inputs: called before the commands of a step are performed, and never waited for."""
+    """A recorder of a behaviour's inputs: it is called before the commands of a step are performed,
+    and must not block.
+    """
 
     def stepped(self, step: Step, how: How) -> None:
         """Record a step."""
@@ -40,16 +44,15 @@ class InputRecorder(Protocol):
     def jumped(
         self, kind: JumpKind, project: Project, snapshot: Snapshot, commands: Sequence[Command] = (), **said: Any
     ) -> None:
-        """Record that the behaviour continues from this snapshot of this project, which no step led to."""
+        """Record that the behaviour continues from this snapshot of this project without a step."""
 
 
 class Runtime:
     """A running behaviour: its bundle, its snapshot, and their changes at a tick.
 
     If a step fails, `rescue` may switch to another bundle, under which the event is processed again. Otherwise the
-    event or timer is dropped and logged, and `dropped` is called with a sentence about it: a message that makes a step
-    fail must not end the exhibition. `observe` is called with every step, in order. `epoch` is the date of time 0 [s
-    since 1970], `timezone` that of times of day.
+    event or timer is dropped and logged, and `dropped` is called with a sentence about it, because a message that makes
+    a step fail must not end the exhibition. `observe` is called with every step, in order.
     """
 
     def __init__(
@@ -63,11 +66,11 @@ class Runtime:
         self._observe, self._rescue, self._dropped = observe, rescue, dropped
         self._snapshot: Snapshot | None = None
         self.recorder: InputRecorder | None = None
-        """Records what is needed to replay the steps, None for no journal."""
+        """Records what a replay of the steps needs; None for no journal."""
         self.approvals = Approvals()
         """Holds back events that a person must approve."""
         self.steps = 0
-        """Number of steps so far; the first of a run is 1."""
+        """The number of steps so far; the first of a run is 1."""
 
     @property
     def begun(self) -> bool:
@@ -90,7 +93,11 @@ class Runtime:
         timezone: str = "",
         context: Mapping[str, Any] | None = None,
     ) -> list[Command]:
-        """Enter the initial states; return the commands to perform. `context` overrides initial values."""
+        """Enter the initial states; return the commands to perform.
+
+        `context` overrides initial values. `epoch` is the date of time 0 [s since 1970], and `timezone` the IANA name
+        for times of day.
+        """
         language = language or self.project.languages[0]
         arguments: dict[str, Any] = {"at": now, "input": context, "language": language, "epoch": epoch}
         arguments["timezone"] = timezone
@@ -101,7 +108,7 @@ class Runtime:
         return [command for emission in self.advance(now, events) for command in emission.commands]
 
     def advance(self, now: float, events: Iterable[Event] = ()) -> list[Emission]:
-        """Do what `tick` does, but return the commands by step; steps without commands are left out."""
+        """Do the same as `tick`, but return the commands by step; steps without commands are left out."""
         emitted: list[Emission] = []
         for event in sorted(events, key=lambda e: e.at):
             self._timers(min(event.at, now), emitted)
@@ -112,7 +119,7 @@ class Runtime:
     def plan(self, project: Project, at: float, *, now: bool = False, back: bool = False) -> MigrationVerdict:
         """Return how the behaviour would continue under another bundle at `at` [s], or why it can't; nothing changes.
 
-        `now` cancels what it would otherwise wait for; `back` means that the bundle ran before.
+        `now` cancels the actions for which it would otherwise wait; `back` means that the bundle ran before.
         """
         return plan(self.project, project, self.snapshot, at=at, now=now, back=back)
 
@@ -134,7 +141,7 @@ class Runtime:
             raise
 
     def note(self, **said: Any) -> None:
-        """Record a text at this moment; the behaviour does not get it."""
+        """Record a text at this moment; the behaviour does not receive it."""
         self._record("keyframe", **said)
 
     def take(self, taken: Step) -> list[Command]:

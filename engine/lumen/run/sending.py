@@ -9,7 +9,7 @@ from lumen.ports import Bus
 
 
 def send(bus: Bus, project: Project, route: str, body: Any, origin: MessageOrigin = UNKNOWN_ORIGIN) -> str:
-    """Publish a body on a route; return why that failed, empty if it did not."""
+    """Publish a body on a route; return why that failed, else an empty string."""
     if route not in project.routes:
         return f"there is no route `{route}`"
     try:

@@ -30,9 +30,9 @@ T = TypeVar("T")
 
 
 class Services:
-    """The bus, clock, node and narrator of an exhibition, its parts, and what they provide.
+    """The bus, clock, node and narrator of an exhibition, its parts, and the objects that they provide.
 
-    A part's maker finds what was made before it: `services[LiveBehavior]`, or `services.get(RobotPart)` if that may be
+    A part's maker finds earlier objects here: `services[LiveBehavior]`, or `services.get(RobotPart)` if that may be
     missing. Objects given to `provide` are found in the same way. Raises BusError if the bus can't be reached.
     """
 
@@ -53,7 +53,9 @@ class Services:
             time_passes=NodeTime(plan.speed if plan.roles else None, plan.leaps, self._pace),
         )
         self.left_out: list[str] = []
-        """Parts of packages that could not be made, each with its package; the others are notified when they begin."""
+        """The parts of packages that could not be made, each with its package; other parts are notified when they
+        begin.
+        """
         self._provided: list[object] = []
         self._places: dict[Part, int] = {}
 
@@ -64,7 +66,7 @@ class Services:
         return found
 
     def get(self, kind: type[T]) -> T | None:
-        """Return the part or service of a kind, or None."""
+        """Return the part or service of a kind, else None."""
         parts = (part.own if isinstance(part, AddedPart) else part for part in self.node.parts)
         return next((one for one in (*self._provided, *parts) if isinstance(one, kind)), None)
 
@@ -103,7 +105,7 @@ class Services:
 
     @property
     def lasts(self) -> bool:
-        """Whether the run keeps files in a home: not for a story, nor as a guest of another run."""
+        """Whether the run keeps files in a home; False for a story, and for a guest of another run."""
         directory = self.plan.options.get("directory")
         return bool(directory and directory.home) and self.plan.story is None
 
@@ -141,7 +143,7 @@ class Services:
         return presence_of(plan.project, self.bus, tuple(parts), self._said)
 
     def _said(self) -> dict[str, Any]:
-        """Return the fields of the presence that others get from this process."""
+        """Return the fields that this process adds to its presence."""
         robot = self.get(RobotPart)
         body: dict[str, Any] = {"bundle": self.project.hash}
         if self.plan.roles:

@@ -31,13 +31,13 @@ class Setup:
     robot: Robot
     clock: Clock
     hall: Hall | None
-    """The simulated world around it, None in the real world."""
+    """The simulated world around it; None in the real world."""
     blind: str = ""
-    """Why its camera has no images, and what to do about it; empty if it has."""
+    """Why its camera has no images, with advice; empty if it has images."""
     remote: bool = False
     """Whether its server is in another process."""
     tracking: TrackingService | None = None
-    """Lets controllers follow sightings, None if the exhibition does that itself."""
+    """Lets controllers follow sightings; None if the exhibition does that itself."""
 
     def hurry(self) -> None:
         """End the clock's current wait, if it can, for something urgent."""
@@ -73,7 +73,7 @@ def set_up(
     *,
     real_skills: bool = False,
 ) -> Setup:
-    """Return the robot of a name, on its feet; `options` are the given ones of its row.
+    """Return the robot of a name, on its feet; `options` are the given options of its row.
 
     With `real_skills` the recording robot runs the code of added verbs. Raises UsageError if there is no such robot
     here, or the options do not apply to it; LumenError with the name of the installed package if the robot's code is
@@ -94,7 +94,7 @@ def set_up_house(
 ) -> dict[str, Setup]:
     """Return several robots of a kind, on their feet, by the names of their projects.
 
-    Raises UsageError as `set_up` does, or if there can't be several.
+    Raises the errors of `set_up`, and UsageError if there can't be several.
     """
     requests = {n: RobotRequest(project, speed, stories[n], options) for n, project in projects.items()}
     if all(_is_own(kind, project) for project in projects.values()):
@@ -115,7 +115,7 @@ def set_up_house(
 def robot_kind(wanted: str, root: Path) -> str:
     """Return the name of the robot that performs: the `wanted` one, else the driver of lumen.yaml, else `simulation`.
 
-    Raises UsageError if there is no robot or driver of the wanted name.
+    Raises UsageError if no robot or driver has the wanted name.
     """
     if not wanted:
         settings = main_settings(root)
@@ -182,7 +182,7 @@ def runs_in_real_time(kind: str) -> bool:
 
 
 def robot_options() -> tuple[RobotOption, ...]:
-    """Return the options of all robots, one of each name; its help combines those of all robots with it."""
+    """Return the options of all robots, one of each name; its help is that of all robots that have the option."""
     found: dict[str, RobotOption] = {}
     for row in table("robots").values():
         for option in row.options:
@@ -206,8 +206,8 @@ def _row(kind: str, options: Mapping[str, str] = NO_OPTIONS) -> RobotRow:
 def set_up_with(robot: Robot, clock: Clock | None = None, pace: float | None = None) -> Setup:
     """Return a setup of a given robot, on `clock` or by default on its own time, at `pace` times real time at most.
 
-    A robot that can `advance` is moved on by the time that passes; any other runs in real time. A robot with the
-    methods of a `Hall` is its own hall.
+    A robot that can `advance` is advanced by the time that passes; any other runs in real time. With `pace` None an
+    advancing robot runs as fast as possible. A robot with the methods of a `Hall` is its own hall.
     """
     hall = ability(robot, Hall)
     living = ability(robot, Advances)
@@ -218,14 +218,14 @@ def set_up_with(robot: Robot, clock: Clock | None = None, pace: float | None = N
 
 
 class _DrivenClock:
-    """A given clock that also moves a simulated world on."""
+    """A given clock that also advances a simulated world."""
 
     def __init__(self, clock: Clock, live: Callable[[float], None]) -> None:
         self._clock, self._live, self._lived = clock, live, clock.now()
 
     @property
     def realtime(self) -> float:
-        """The share of its speed that the clock keeps, 1 if unknown."""
+        """The share of its nominal speed that the clock reaches; 1 if unknown."""
         return self._clock.realtime if isinstance(self._clock, MeasuresPace) else 1.0
 
     def now(self) -> float:

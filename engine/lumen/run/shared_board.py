@@ -1,4 +1,4 @@
-"""The shared values of a house's robots: a robot's own are published, those of the others received."""
+"""The shared values of a house's robots: a robot publishes its own, and receives those of the others."""
 
 import logging
 from collections import deque
@@ -18,9 +18,9 @@ from lumen.ports import Bus, Message
 from lumen.statechart import Snapshot
 
 RETELL_PERIOD = 10.0
-"""Time after which unchanged values are published again [s], because a broker keeps none."""
+"""The time after which unchanged values are published again [s], because a broker keeps none."""
 MAX_WAITING_TOLD = 1_000
-"""Messages that may wait for a tick; one more drops the oldest."""
+"""The number of messages that may wait for a tick; one more drops the oldest."""
 
 _log = logging.getLogger(__name__)
 
@@ -28,7 +28,7 @@ _log = logging.getLogger(__name__)
 class SharedBoard:
     """A robot's connection to the shared values of its house.
 
-    Received values wait for `drain`, which makes an event of those that the behaviour does not have yet.
+    Received values wait for `drain`, which makes an event of those that differ from the behaviour's.
     """
 
     def __init__(self, bus: Bus) -> None:
@@ -51,16 +51,16 @@ class SharedBoard:
 
     @property
     def empty(self) -> bool:
-        """Whether no message or request waits."""
+        """Whether no message and no request waits."""
         return not self._waiting and not self._asked
 
     @property
     def due(self) -> float:
-        """When the values are published again [s], infinite if there are none."""
+        """When the values are published again [s]; infinite without shared values."""
         return self._next if self._key else inf
 
     def drain(self, snapshot: Snapshot, now: float) -> list[Event]:
-        """Return the received values that the behaviour does not have yet, as events at `now` [s]."""
+        """Return the received values that differ from the behaviour's, as events at `now` [s]."""
         events, known = list[Event](), dict(snapshot.context.get(SHARED, {}))
         while self._waiting:
             values, cause = self._waiting.popleft()
@@ -70,7 +70,7 @@ class SharedBoard:
         return events
 
     def tell(self, snapshot: Snapshot, now: float) -> None:
-        """Publish the robot's own values if they have changed, another robot requests them, or it is time."""
+        """Publish the robot's own values if they changed, another robot requests them, or RETELL_PERIOD has passed."""
         project = self._project
         if project is None or not self._key:
             return
@@ -89,7 +89,7 @@ class SharedBoard:
             _log.warning("the shared values of the house can't be sent: %s", error)
 
     def _hear(self, message: Message) -> None:
-        """Queue the values of a message if the sender owns them and their types are right; else log it."""
+        """Queue the values of a message if the sender owns them and their types are right; log any other message."""
         project = self._project
         match message.body:
             case {"from": str(robot), "values": dict(values), "asks": bool(asks)} if project:

@@ -16,28 +16,28 @@ SNAPSHOT_FILE, ALIVE_FILE = "snapshot.json", "alive.json"
 LAST_GOOD_FILE = "good.json"
 SNAPSHOT_VERSION = 1
 SNAPSHOT_SPACING = 0.02
-"""Least time between two snapshots [s]: a simulation may run a hundred steps in it."""
+"""The least time between two snapshots [s]: a simulation may run a hundred steps in it."""
 
 
 class StoredSnapshot(NamedTuple):
     """A snapshot as it was written."""
 
     bundle: str
-    """Hash of the bundle."""
+    """The hash of the bundle."""
     behavior: str
-    """Name of the behaviour."""
+    """The name of the behaviour."""
     time: float
     """When it was written [s since 1970]."""
     frozen: Mapping[str, Any]
     """The serialised snapshot."""
     tracking: tuple[str, ...] = ()
-    """Controllers that were on."""
+    """The names of the controllers that were on."""
     rests: bool = False
     """Whether the robot was at rest."""
     ended: float = 0.0
     """When the run was last known to be alive [s since 1970]."""
     told: bool = False
-    """Whether the system ordered the run to end."""
+    """Whether the operating system ordered the run to end."""
 
 
 class SnapshotStore:
@@ -51,12 +51,12 @@ class SnapshotStore:
         self._last: Snapshot | None = None
         self._written = 0.0
         self.trouble = ""
-        """Why the first failed write failed, empty if none did."""
+        """The reason why the first failed write failed; empty if none did."""
         self.count = 0
-        """Number of snapshots written."""
+        """The number of snapshots written."""
 
     def due(self, snapshot: Snapshot) -> bool:
-        """Return whether a snapshot is new, and the last was written at least SNAPSHOT_SPACING ago."""
+        """Return whether a snapshot is new, and the last one was written at least SNAPSHOT_SPACING ago."""
         last = self._last
         if last is snapshot or (last is not None and _same(last, snapshot)):
             return False
@@ -86,15 +86,15 @@ class SnapshotStore:
         self.count += 1
 
     def beat(self) -> None:
-        """Note that the run is alive and its snapshot still valid."""
+        """Record that the run is alive and its snapshot still valid."""
         self._wrote(self._home.write_json(ALIVE_FILE, {"time": time.time()}))
 
     def leave(self) -> None:
-        """Note that the run was ordered to end, so that the next one resumes it."""
+        """Record that the run was ordered to end, so that the next one resumes it."""
         self._wrote(self._home.write_json(ALIVE_FILE, {"time": time.time(), "told": True}))
 
     def kept(self) -> StoredSnapshot | None:
-        """Return the snapshot of a run that did not end by itself, None if it is missing or unreadable."""
+        """Return the snapshot of a run that did not end by itself; None if it is missing or unreadable."""
         try:
             data = self._home.read_json(SNAPSHOT_FILE)
             if data["version"] != SNAPSHOT_VERSION:
@@ -116,7 +116,9 @@ class SnapshotStore:
             return None
 
     def of_another_version(self) -> tuple[str, bool]:
-        """Return the version of another Lumen's snapshot, empty if it is this one's, and whether the robot rests."""
+        """Return the version of a snapshot by another version of Lumen, else an empty string; and whether the robot
+        rests.
+        """
         data = self._home.read_json(SNAPSHOT_FILE)
         said = data.get("version", SNAPSHOT_VERSION) if isinstance(data, Mapping) else SNAPSHOT_VERSION
         return ("", False) if said == SNAPSHOT_VERSION else (str(said)[:20], data.get("rests") is True)
@@ -128,14 +130,14 @@ class SnapshotStore:
         self._last = None
 
     def store(self, files: Mapping[str, bytes]) -> str:
-        """Store the files of a bundle; return its hash. A damaged file of that name is replaced."""
+        """Store the files of a bundle, and replace a damaged copy of it; return its hash."""
         hash = fingerprint(files)
         if self.files(hash) is None:
             self._wrote(self._home.write(_name(hash), packed(files)))
         return hash
 
     def files(self, hash: str) -> dict[str, bytes] | None:
-        """Return the files of a stored bundle, None if they are missing or damaged."""
+        """Return the files of a stored bundle; None if they are missing or damaged."""
         try:
             found = unpacked(self._home.read(_name(hash)) or b"", 2 * MAX_PROJECT_BYTES)
         except DamagedBundleError:
@@ -143,11 +145,11 @@ class SnapshotStore:
         return found if fingerprint(found) == hash else None
 
     def approve(self, hash: str) -> None:
-        """Note that this bundle is the last good one."""
+        """Record that this bundle is the last good one."""
         self._wrote(self._home.write_json(LAST_GOOD_FILE, {"version": SNAPSHOT_VERSION, "bundle": hash}))
 
     def good(self) -> str:
-        """Return the hash of the last good bundle, or an empty string."""
+        """Return the hash of the last good bundle, else an empty string."""
         try:
             data = self._home.read_json(LAST_GOOD_FILE)
             return str(data["bundle"]) if data["version"] == SNAPSHOT_VERSION else ""

@@ -13,7 +13,7 @@ from typing import IO, NamedTuple
 from lumen.errors import ModuleError
 
 MAX_DURATION = 120.0
-"""Longest sound in a message [s]."""
+"""The longest sound in a message [s]."""
 
 
 class Sound(NamedTuple):
@@ -24,15 +24,15 @@ class Sound(NamedTuple):
 
     @property
     def duration(self) -> float:
-        """Its duration [s]."""
+        """The duration of the sound [s]."""
         return len(self.samples) / (2 * self.rate)
 
     def until(self, length: float) -> "Sound":
-        """Return its beginning, at most `length` [s] long."""
+        """Return the beginning of the sound, at most `length` [s] long."""
         return self.between(0.0, length)
 
     def between(self, begin: float, end: float) -> "Sound":
-        """Return the part between two times [s]; it is shorter if the sound ends before."""
+        """Return the part between two times [s]; it is shorter if the sound ends earlier."""
         return Sound(self.rate, self.samples[self._at(begin) : self._at(end)])
 
     def without(self, spans: Iterable[tuple[float, float]]) -> "Sound":
@@ -59,14 +59,16 @@ class Sound(NamedTuple):
         return Sound(self.rate, quieter.tobytes())
 
     def text(self) -> str:
-        """Return it as a WAV in base64."""
+        """Return the sound as a WAV in base64."""
         data = io.BytesIO()
         _write(data, self)
         return base64.b64encode(data.getvalue()).decode("ascii")
 
 
 def sound_of(text: object) -> Sound:
-    """Return the sound of a WAV in base64. Raises ModuleError for anything else, or an unsupported kind of WAV."""
+    """Return the sound of a WAV in base64. Raises ModuleError for any other text, and for an
+    unsupported kind of WAV.
+    """
     if not isinstance(text, str):
         raise ModuleError("a sound must be a string: a WAV file encoded in base64")
     try:
@@ -79,8 +81,7 @@ def sound_of(text: object) -> Sound:
 def wav(data: bytes) -> Sound:
     """Return the sound of a WAV file's bytes.
 
-    Raises ModuleError for anything else, and unless it has one channel, 16 bits, 8 to 48 kHz and 1 sample to
-    MAX_DURATION.
+    Raises ModuleError unless it is a WAV file with one channel, 16 bits, 8 to 48 kHz, and 1 sample to MAX_DURATION.
     """
     try:
         with wave.open(io.BytesIO(data)) as file:

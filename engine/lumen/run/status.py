@@ -22,9 +22,9 @@ class LastReload(NamedTuple):
     verdict: str
     """A verdict of `ReloadReport`."""
     bundle: str
-    """Hash of the bundle."""
+    """The hash of the bundle."""
     text: str
-    """Its first line for people."""
+    """The first line of the report for people."""
 
 
 NOTHING_SAID: Mapping[str, Any] = {}

@@ -1,4 +1,4 @@
-"""The steps of the last minutes, from which questions about a running exhibition are answered."""
+"""The steps of the last minutes, which answer questions about a running exhibition."""
 
 from collections import deque
 from collections.abc import Callable
@@ -11,9 +11,9 @@ from lumen.run.loop import Observer
 from lumen.statechart import Snapshot, Step
 
 MAX_STEPS = 4_000
-"""Steps with changes that are kept: some hours of visits."""
+"""The number of steps with changes that are kept: some hours of visits."""
 MAX_IDLE = 2_000
-"""Kept steps that changed only the time, as for faces in a conversation: a few minutes."""
+"""The number of kept steps that changed only the time, as for faces in a conversation: a few minutes."""
 
 NumberedStep = tuple[int, RecordedStep]
 

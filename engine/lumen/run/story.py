@@ -45,13 +45,14 @@ from lumen.statechart.nesting import active_names, entered_names
 from lumen.statechart.property_monitor import Violation, monitors
 
 QUESTION_WITHIN = 30.0
-"""Longest wait of `answers` for a question [s]."""
+"""The longest wait of `answers` for a question [s]."""
 
 
 def answered(bus: Bus, project: Project, id: str, answer: AnswerQuestion, waited: float) -> UnmetExpectation | None:
-    """Answer the question of an id; return what is wrong, None if nothing is.
+    """Answer the question of an id; return the unmet expectation, None if nothing is wrong.
 
-    An empty `id` means that no question was asked, which is wrong only after QUESTION_WITHIN.
+    An empty `id` means that no question was asked yet, which is wrong only after QUESTION_WITHIN. `waited` is the time
+    since the step began [s].
     """
     if not id:
         wanted = f"a question to the module `answers` within {QUESTION_WITHIN:g} s"
@@ -69,9 +70,9 @@ class StoryFailure(NamedTuple):
 
     story: str
     step: int
-    """Number of the step, from 1."""
+    """The number of the step, from 1."""
     where: NodePath
-    """Place of the step in the file."""
+    """The place of the step in the file."""
     expected: str
     """The expectation, in words."""
     was: str
@@ -96,7 +97,7 @@ class StoryEnvironment(Protocol):
 
     @property
     def bus(self) -> Bus:
-        """Its bus."""
+        """The exhibition's bus."""
         ...
 
     @property
@@ -109,11 +110,11 @@ class StoryEnvironment(Protocol):
         ...
 
     def press(self, label: str, by: str) -> str:
-        """Press a button; return why that can't be done, empty if it was."""
+        """Press a button; return why that is impossible, else an empty string."""
         ...
 
     def approve(self, by: str, *, go: bool) -> str:
-        """Let the event that has waited longest go or stay; return why that can't be done, empty if it was."""
+        """Let the event that has waited longest go or stay; return why that is impossible, else an empty string."""
         ...
 
     def set_autonomy(self, level: Autonomy, by: str) -> None:
@@ -125,7 +126,7 @@ class StoryPlayer(Observer):
     """An observer that plays one story on an exhibition; call `tick` with the exhibition's time."""
 
     failed: StoryFailure | None = None
-    """How it failed, None if it has not."""
+    """The failure; None if the story has not failed."""
 
     def __init__(
         self,
@@ -148,12 +149,12 @@ class StoryPlayer(Observer):
 
     @property
     def failure(self) -> str:
-        """Why it failed, in one line; empty if it has not."""
+        """Why the story failed, in one line; empty if it has not."""
         return str(self.failed or "")
 
     @property
     def finished(self) -> bool:
-        """Whether its last step is done, or a step has failed."""
+        """Whether the story's last step is done, or a step has failed."""
         return self.failed is not None or self.position >= len(self.story.steps)
 
     def start(self, now: float) -> None:
@@ -167,7 +168,9 @@ class StoryPlayer(Observer):
         self.see(active_names(step.snapshot), entered_names(step), step.snapshot.context, step.snapshot.place)
 
     def see(self, states: frozenset[str], entered: Iterable[str], context: Mapping[str, Any], place: str = "") -> None:
-        """Take over the active states, the context and the robot's place; fail if a forbidden state was entered."""
+        """Store the active states, the context and the robot's place; fail if a forbidden state is active or was
+        entered.
+        """
         self._witness.states, self._witness.context, self._witness.place = states, dict(context), place
         if bad := states.union(entered).intersection(self.story.never):
             self.fail(UnmetExpectation(f"never state {listed(bad)}", "it was entered"))
@@ -205,7 +208,7 @@ class StoryPlayer(Observer):
     def tick(self, now: float) -> None:
         """Do every step that is possible at `now` [s].
 
-        After an action the next tick follows, so that the behaviour gets it before an expectation is tested.
+        After an action the next tick follows, so that the behaviour receives it before an expectation is tested.
         """
         for monitor in sorted(self._monitors, key=lambda monitor: monitor.deadline):
             self._violated(monitor.elapse(now))
@@ -216,7 +219,7 @@ class StoryPlayer(Observer):
             self._since, self._awaited = now, None
 
     def quiet_until(self, now: float) -> float:
-        """Return until when it does nothing [s], unless something that it expects happens."""
+        """Return until when the player does nothing [s], unless an expectation is met earlier."""
         if self.finished:
             return now
         return min(self._quiet_until(now), *(monitor.deadline for monitor in self._monitors), inf)
@@ -290,7 +293,7 @@ class StoryPlayer(Observer):
         return self._moment(now) >= self._awaited
 
     def _answer(self, answer: AnswerQuestion, now: float) -> bool:
-        """Answer the last question; return False until there is one."""
+        """Answer the last question; return False until a question was asked."""
         id, self._witness.asked = self._witness.asked, ""
         if id:
             self._tell(answer)
@@ -323,5 +326,5 @@ class StoryPlayer(Observer):
 
 
 def _distance(lacking: tuple[UnmetExpectation, ...]) -> tuple[bool, int]:
-    """Return how far an expectation is from being met: first whether the state differs, then how much is missing."""
+    """Return how far an expectation is from being met: whether a state is missing, and the number of unmet parts."""
     return any(lack.state for lack in lacking), len(lacking)

@@ -13,7 +13,7 @@ from lumen.language.stories import Expect, Happen, SetSkills, Story
 
 
 class UnmetExpectation(NamedTuple):
-    """An expectation, and what happened instead, in words."""
+    """An expectation, and the actual outcome, in words."""
 
     expected: str
     was: str
@@ -26,25 +26,25 @@ class StoryObservations:
     """The present state of an exhibition, and what happened since the last expectation that was met."""
 
     states: frozenset[str] = frozenset()
-    """Names of the active states."""
+    """The names of the active states."""
     context: dict[str, object] = field(default_factory=dict)
     """The behaviour's context."""
     place: str = ""
-    """The robot's place, empty if it is at none."""
+    """The robot's place; empty if it is at none."""
     said: list[str] = field(default_factory=list)
     """Texts that the robot began to say."""
     played: list[str] = field(default_factory=list)
     """Motions that ended."""
     did: list[Do] = field(default_factory=list)
-    """Skills that ended."""
+    """The skills that ended."""
     published: list[tuple[str, Any]] = field(default_factory=list)
     """Messages that were sent, with their routes."""
     playing: dict[str, str] = field(default_factory=dict)
     """Motions under way, by id."""
     doing: dict[str, Do] = field(default_factory=dict)
-    """Skills under way, by id."""
+    """The skills under way, by id."""
     asked: str = ""
-    """Id of the question that has no answer yet, else empty."""
+    """The id of the question without an answer; empty for none."""
 
     def unmet(self, expected: Expect) -> tuple[UnmetExpectation, ...]:
         """Return everything in `expected` that is not met now."""
@@ -89,12 +89,12 @@ class StoryObservations:
         return None
 
     def hear(self, event: Event | None) -> None:
-        """Note that the question is answered if this event of the behaviour answers it; a filler does not."""
+        """Record that the question is answered if this event answers it; a filler does not."""
         if event and self.asked and event.name.endswith(f".command.{self.asked}"):
             self.asked = self.asked if event.data and event.data.get("filler") else ""
 
     def forget(self) -> None:
-        """Forget what was said, played, done and published."""
+        """Delete the texts, motions, skills and messages observed so far."""
         self.said, self.played, self.did, self.published = [], [], [], []
 
 
@@ -127,7 +127,7 @@ def expects_error(story: Story, machine: MachineDefinition) -> bool:
 
 
 def _holds(body: Any, wanted: Any) -> bool:
-    """Return whether a body has everything wanted: the given keys of a map, each item of a list."""
+    """Return whether a body has everything wanted: the given keys of a map with these values, or an equal value."""
     if isinstance(wanted, Mapping) and isinstance(body, Mapping):
         return all(key in body and _holds(body[key], value) for key, value in wanted.items())
     return wanted is None or bool(body == wanted)
@@ -144,12 +144,12 @@ def _at(place: str) -> str:
 
 
 def _texts(texts: list[str], wanted: str) -> str:
-    """Return the texts that were said, and of several the one most like the wanted one."""
+    """Return the texts that were said; of several, also name the one most like the wanted text."""
     shown = "; ".join(f"“{t}”" for t in texts) or "nothing"
     return f"{shown}; the nearest is “{max(texts, key=partial(_likeness, wanted))}”" if len(texts) > 1 else shown
 
 
 def _likeness(wanted: str, text: str) -> int:
-    """Return how many letters a text has in common with the wanted one, in the same order."""
+    """Return the number of letters that a text shares with the wanted one, in runs of three or more."""
     blocks = SequenceMatcher(None, wanted.lower(), text.lower(), autojunk=False).get_matching_blocks()
     return sum(block.size for block in blocks if block.size > 2)

@@ -117,10 +117,12 @@ _NAME = re.compile(r"[A-Za-z_]\w*", re.ASCII)
 
 
 class Written(NamedTuple):
-    """The files that were written or changed, relative to the project, and the next steps with their purposes."""
+    """The result of writing a template."""
 
     files: tuple[str, ...]
+    """The files written or changed, relative to the project."""
     next: tuple[tuple[str, str], ...]
+    """The next steps, each with its purpose."""
 
 
 def write_template(kind: str, name: str, root: Path) -> Written:
@@ -160,7 +162,7 @@ def _module(name: str, root: Path) -> Written:
     _write(root, {f"{name}.py": MODULE.format(name=name)})
     main.write_text(text, "utf-8")
     settings = main_settings(root)
-    assert settings is not None  # it could be read before the change
+    assert settings is not None  # the file could be read before the change
     if name not in settings.modules:  # `modules` is written in an unusual way
         raise UsageError(f"wrote {name}.py; now add this line to `modules:` of {MAIN_FILE}: {entry}")
     steps = (
@@ -172,7 +174,10 @@ def _module(name: str, root: Path) -> Written:
 
 
 def _with_module(text: str, name: str, entry: str) -> str:
-    """Return lumen.yaml with an entry in `modules`; unchanged if that is written in an unusual way."""
+    """Return lumen.yaml with an entry in `modules`; unchanged if `modules` is written in an unusual way.
+
+    Raises UsageError if there is a module of that name.
+    """
     lines = text.splitlines(keepends=True)
     at = next((i for i, line in enumerate(lines) if re.match(r"modules\s*:", line)), None)
     if at is None:
@@ -216,4 +221,4 @@ TEMPLATES: Mapping[str, Callable[[str, Path], Written]] = {
     "module": _module,
     "robot": _robot,
 }
-"""The files of `lumen new KIND NAME`."""
+"""The function that writes the files of each `lumen new KIND NAME`."""

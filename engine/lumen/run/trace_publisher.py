@@ -21,9 +21,9 @@ from lumen.statechart.nesting import active_names, entered_names, flattened_step
 
 TRACE_ROUTE = "state"
 TRACE_TTL = 10.0
-"""Default lifetime of a message [s]."""
+"""The default time to live of a message [s]."""
 MAX_DATA_CHARACTERS = 10_000
-"""Longest body of an event that is published."""
+"""The greatest length of an event's data that is published [characters]."""
 
 _log = logging.getLogger(__name__)
 
@@ -31,8 +31,8 @@ _log = logging.getLogger(__name__)
 class TracePublisher(Observer):
     """A publisher of each step that changed something, each command and its answer, and the events that wait for GO.
 
-    `project` returns the bundle that runs, `now` the time [s], `count` how many steps the run has had, `emitting` which
-    of them emitted the present command (0 if unknown), and `waiting` the events that wait for GO.
+    `project` returns the bundle that runs, `now` the time [s], `count` the number of steps so far, `emitting` the
+    number of the step that issued the present command (0 if unknown), and `waiting` the events that wait for GO.
     """
 
     def __init__(
@@ -61,7 +61,7 @@ class TracePublisher(Observer):
         self._tell({**body, "step": self._count(), "transitions": taken, "bundle": project.hash, "data": _data(step)})
 
     def migrated(self, plan: MigrationPlan) -> None:
-        """Publish the state after a reload, and which states it left and entered."""
+        """Publish the state after a reload, with the states left and entered."""
         project = self._project()
         cause = Cause("file", f"behaviors/{project.behavior}.yaml")
         ways = {"entered": list(plan.entered), "exited": list(plan.exited), "event": "", "cause": _cause(cause)}
@@ -134,7 +134,7 @@ def _transitions(project: Project, step: Step) -> Iterator[dict[str, Any]]:
 
 
 def _file(project: Project, machine: MachineDefinition) -> str:
-    """Return the file of a machine; one with a story's context is another object than the one that was read."""
+    """Return the file of a machine; with a story's context the machine is another object than the one read."""
     names = {id(one): name for name, one in project.behaviors.items()} | {id(project.machine): project.behavior}
     return f"behaviors/{names.get(id(machine), machine.id)}.yaml"
 
@@ -145,7 +145,7 @@ def _cause(cause: Cause | None) -> dict[str, Any]:
 
 
 def _data(step: Step) -> Any:
-    """Return the event's data, None if it is too long to leave room for the rest."""
+    """Return the event's data; None if it is too long."""
     data = step.event.data if step.event else None
     return data if len(repr(data)) <= MAX_DATA_CHARACTERS else None
 

@@ -19,9 +19,9 @@ from lumen.run.troubles import RunTrouble
 from lumen.upkeep.threads import MessageGuard
 
 REQUEST_TTL = 5.0
-"""Longest time that a request may wait for the brain [s]."""
+"""The longest time that a request may wait for the brain [s]."""
 MAX_PENDING_TRACES = 10_000
-"""Messages that may wait for a tick; one more drops the oldest."""
+"""The number of messages that may wait for a tick; one more drops the oldest."""
 
 _log = logging.getLogger(__name__)
 
@@ -72,11 +72,16 @@ class TraceSubscriber:
                         _tell(watcher, body, now)
 
     def press(self, label: str, by: str) -> str:
-        """Request a button press from the brain; return why that can't be sent. The result is not reported here."""
+        """Request a button press from the brain; return why the request can't be sent, else an empty string.
+
+        The result is not reported here.
+        """
         return self._wish(PRESS(button=label, by=by))
 
     def approve(self, by: str, *, go: bool) -> str:
-        """Request a decision on the event that has waited longest; return why that can't be sent."""
+        """Request a decision on the event that has waited longest; return why the request can't be sent, else an empty
+        string.
+        """
         return self._wish(APPROVE(id="", go=go, by=by))
 
     def set_autonomy(self, level: Autonomy, by: str) -> None:

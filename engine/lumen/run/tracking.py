@@ -35,7 +35,7 @@ class TrackingService(Protocol):
 
 
 class LocalTracking:
-    """The controllers that are on; they get poses and sightings from the bus, and aim the robot's joints.
+    """The controllers that are on; they receive poses and sightings from the bus, and aim the robot's joints.
 
     All inputs are messages, as for a motion module on another machine. A sighting without `time` is assumed to be as
     old as its route's `latency`.
@@ -48,7 +48,7 @@ class LocalTracking:
         self.reload(project)
 
     def reload(self, project: Project) -> None:
-        """Switch to another bundle; a controller that is on and has changed keeps the last sightings."""
+        """Switch to another bundle; a changed controller that is on keeps the last sightings."""
         old, self._project = self._project, project
         for name in list(self._trackers):
             controller = project.controllers.get(name)
@@ -66,7 +66,7 @@ class LocalTracking:
         return tuple(self._trackers)
 
     def switch(self, track: Track) -> None:
-        """Switch a controller on or off; ignore one that is on already, or that the bundle lacks."""
+        """Switch a controller on or off; ignore one that is already on, and one that the bundle lacks."""
         if not track.on:
             self._trackers.pop(track.controller, None)
         elif track.controller not in self._trackers and (found := self._project.controllers.get(track.controller)):
@@ -106,6 +106,6 @@ def _angles(body: Any, joints: tuple[str, ...]) -> dict[str, float]:
 
 
 def _time(body: Mapping[str, Any], otherwise: float) -> float:
-    """Return the `time` of a body [s], or `otherwise` without one."""
+    """Return the `time` of a body [s], else `otherwise`."""
     time = body.get("time")
     return time if is_number(time) else otherwise

@@ -15,10 +15,11 @@ _ENDED = {"error.do.": "`do`", "error.invoke.": "`invoke`"}
 
 
 class RunTrouble(NamedTuple):
-    """A fall, a dropped event or timer, an error of an action or `do`, or a joint that missed its goal; in words."""
+    """A fall, a dropped event or timer, an error of an action or `do`, or a joint that missed its goal."""
 
     kind: TroubleKind
     what: str
+    """The trouble in words."""
 
 
 def troubles_of_step(machine: MachineDefinition, step: Step) -> Iterator[RunTrouble]:
@@ -37,7 +38,7 @@ def troubles_of_step(machine: MachineDefinition, step: Step) -> Iterator[RunTrou
             if name.startswith(begin)
         ]
         failed = [("an action failed", reason) for name, reason in errors if name == "error.execution"]
-        for text, reason in ended or failed:  # an action of a `do` raises both
+        for text, reason in ended or failed:  # an error in a `do` raises both
             if not wanted(reason):
                 yield RunTrouble("do", text + (f": {reason}" if reason else ""))
 
@@ -53,7 +54,7 @@ def wanted(reason: str) -> bool:
 
 
 def trouble_of_answer(event: Event) -> RunTrouble | None:
-    """Return the trouble that an answer or an observation of the robot reports, None if there is none."""
+    """Return the trouble that an answer or an observation of the robot reports; None if it reports none."""
     if event.name == FALLEN:
         return RunTrouble("fall", "the robot fell")
     missed = event.data.get(MISSED) if isinstance(event.data, dict) else None

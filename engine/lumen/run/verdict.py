@@ -32,32 +32,32 @@ class Verdict:
     """The result of `lumen test`."""
 
     name: str
-    """Name of the project."""
+    """The name of the project."""
     rehearsals: tuple[Rehearsal, ...] = ()
-    """Results of the stories."""
+    """The results of the stories."""
     coverage: Coverage | None = None
-    """Coverage of the stories, None if that is not measured."""
+    """The coverage of the stories; None if it is not measured."""
     wanted: float = 0.0
-    """Least coverage [%]."""
+    """The least coverage [%]."""
     explored: Explored | None = None
-    """Result of the exploration, None if there was none."""
+    """The result of the exploration; None without an exploration."""
     took: float = 0.0
-    """Duration of the whole test [s]."""
+    """The duration of the whole test [s]."""
     trials: tuple[QuestionTrial, ...] = ()
-    """Results of the exhibition's questions, which never fail the test."""
+    """The results of the exhibition's questions, which never fail the test."""
     sayings: tuple[JudgedSaying, ...] = ()
-    """Results of the sayings."""
+    """The results of the sayings."""
     examples: tuple[JudgedExample, ...] = ()
-    """Results of the functions' examples."""
+    """The results of the functions' examples."""
 
     @property
     def failed(self) -> int:
-        """Number of failed stories."""
+        """The number of failed stories."""
         return sum(r.failed is not None for r in self.rehearsals)
 
     @property
     def misheard(self) -> list[JudgedSaying]:
-        """The sayings that another row matches, or from which something else is extracted."""
+        """The sayings that match another row, or whose slots have other values."""
         return [one for one in self.sayings if one.tried.wrong]
 
     @property
@@ -77,5 +77,5 @@ class Verdict:
 
     @property
     def well(self) -> bool:
-        """Whether nothing is wrong."""
+        """Whether nothing failed, the coverage suffices, and the exploration found nothing."""
         return not (self.all_failed or self.uncovered or (self.explored and self.explored.findings))

@@ -1,4 +1,4 @@
-"""A version of a project: a folder, a revision of its repository, or what runs now."""
+"""A version of a project: a folder, a revision of its repository, or the running files."""
 
 import os
 from collections.abc import Mapping
@@ -27,9 +27,9 @@ class Version(NamedTuple):
     """The name that was given, or the project's folder."""
     project: Project
     files: Mapping[str, bytes]
-    """Contents of its files, by path."""
+    """The contents of its files, by path."""
     snapshot: Snapshot | None = None
-    """The current snapshot if it runs now, else None."""
+    """The current snapshot if it runs now; else None."""
 
 
 def version(name: str | None, here: Path | None = None, robot: str = "") -> Version:

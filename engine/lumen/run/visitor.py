@@ -15,9 +15,9 @@ from lumen.run.sending import send
 _log = logging.getLogger(__name__)
 
 VISITOR_SPEED = 1.0
-"""Walking speed [m/s]."""
+"""The walking speed [m/s]."""
 APPROACH_DISTANCE = 1.5
-"""Distance that a visitor walks to arrive or leave [m]."""
+"""The distance that a visitor walks to arrive or leave [m]."""
 SPEECH_ROUTE = "heard"
 
 
@@ -45,7 +45,7 @@ class VisitorActor:
         return self._project.body.tactile if isinstance(self._hall, FeelsTouch) else ()
 
     def use(self, project: Project) -> None:
-        """Switch to another bundle's routes."""
+        """Switch to another bundle."""
         self._project = project
 
     def arrive(self, visitor: Visitor) -> None:
@@ -61,7 +61,7 @@ class VisitorActor:
             self._goal, self._leaving = replace(self._visitor, x=self._visitor.x + APPROACH_DISTANCE), True
 
     def speak(self, text: str, language: str = "") -> None:
-        """Say a text that the speech module understands at once."""
+        """Say a text, which the speech module's messages contain at once."""
         if isinstance(self._hall, HearsVisitors):
             self._hall.sound()
         body = {"name": "visitor", "result": text, "date": "", "language": language}

@@ -26,15 +26,15 @@ class RobotVoice(Protocol):
     """A voice of a simulated robot."""
 
     words: tuple[WordTime, ...]
-    """When the words of the last text begin, if the voice measures that."""
+    """When the words of the last text begin; empty if the voice does not measure that."""
 
     @property
     def mute(self) -> bool:
-        """Whether it makes no sound that can be heard."""
+        """Whether the voice makes no sound that can be heard."""
         ...
 
     def begin(self, text: str, language: str, volume: float, now: float) -> float:
-        """Say a text from `now` [s] on, with a `volume` from 0 to 1; return how long that takes [s]."""
+        """Say a text from `now` [s] on, with a `volume` from 0 to 1; return the duration [s]."""
         ...
 
     def end(self, now: float) -> None:
@@ -47,9 +47,9 @@ class RobotVoice(Protocol):
 
 
 class AddedVoice:
-    """A wrapper of `voice`, a row `name` of a package's feature, that goes silent after a fault and logs it.
+    """A wrapper of `voice`, the row `name` of a package's feature; after a fault it logs the fault and is silent.
 
-    A silent text takes as long as one of a robot without a voice.
+    A silent text takes as long as on a robot without a voice.
     """
 
     def __init__(self, voice: RobotVoice, feature: Feature, name: str) -> None:
@@ -77,7 +77,7 @@ class AddedVoice:
         self._attempt(self._voice.close, None)
 
     def _attempt(self, call: Callable[[], T], otherwise: T) -> T:
-        """Return the result of a call of the voice, or `otherwise` if the voice is or becomes silent."""
+        """Return the result of a call of the voice; `otherwise` if the voice is silent or fails."""
         if self._silent:
             return otherwise
         faults: list[Diagnostic] = []

@@ -10,7 +10,7 @@ from lumen.statechart import Snapshot
 TOLERANCE = 1.0
 """Difference [s] that is ignored, because ticks may be late, and a simulation slower than real time."""
 READINGS = 5
-"""The most readings of both clocks if a crowded machine suspends the process between two readings."""
+"""The greatest number of readings of both clocks, if a busy machine suspends the process between two readings."""
 
 
 def date_of_zero(now: Callable[[], float], wall: Callable[[], float]) -> float:

@@ -16,17 +16,17 @@ from lumen.project.project_folders import ALL_FOLDERS, MOTIONS
 from lumen.upkeep.threads import WatchedThread
 
 QUIET_PERIOD = 0.3
-"""Time without a change after which files are checked [s]."""
+"""The time without a change after which files are checked [s]."""
 SHORT_QUIET_FRACTION = 0.2
-"""Share of the quiet period that is enough for a single complete and good file."""
+"""The share of the quiet period that suffices for a single complete and good file."""
 MAX_READ_PERIOD = 1.0
-"""Longest time between two readings of the files [s]."""
+"""The longest time between two readings of the files [s]."""
 HINT_DEBOUNCE = 10
-"""Time for which the operating system's notifications are collected [ms]."""
+"""The time for which the operating system's notifications are collected [ms]."""
 EARLY = 5.0
-"""Time after a watcher's start when the checker is prepared [s]: before, the exhibition is busy."""
+"""The time after a watcher's start at which the checker is prepared [s]; before it, the exhibition is busy."""
 SWITCH_INTERVAL = 0.001
-"""Longest time that a thread may block the others [s]: a stop passes through four of them."""
+"""The longest time that a thread may block the others [s]: a stop passes through four of them."""
 
 _log = logging.getLogger(__name__)
 WatchedFiles = Mapping[str, bytes]
@@ -37,22 +37,23 @@ class SavedFiles(NamedTuple):
     """Files that have settled after a change."""
 
     files: WatchedFiles
-    """Contents of all files of the project, by path."""
+    """The contents of all files of the project, by path."""
     changed: tuple[str, ...]
-    """Paths of the files that differ from those checked before."""
+    """The paths of the files that differ from those checked before."""
     seen: float
     """When the first change was noticed [s, monotonic]."""
     quiet: float
     """When the last change was a quiet period ago [s, monotonic]."""
     asked: object = None
-    """The argument of `ask`, None for files that were saved."""
+    """The argument of `request` or `give`; None for files that were saved."""
 
 
 class GivenFiles(NamedTuple):
-    """Files from elsewhere than the project's folder, and what is returned with their result."""
+    """Files from elsewhere than the project's folder."""
 
     files: WatchedFiles
     asked: object
+    """The value that is returned with their result."""
 
 
 class FileWatcher(Generic[T]):
@@ -191,7 +192,9 @@ class FileWatcher(Generic[T]):
         return self._hint.is_set()
 
     def _settled(self, saved: SavedFiles) -> tuple[T | None, SavedFiles]:
-        """Return the files once they have not changed for long enough, with their result if already checked."""
+        """Return the files once they have not changed for long enough, with their result if
+        they were already checked.
+        """
         since, judged = time.monotonic(), self._judged_at_once(saved)
         while not self._stop.is_set():
             self._hint.clear()

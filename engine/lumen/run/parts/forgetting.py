@@ -16,9 +16,7 @@ ROUTE = "forgotten"
 MAX_PENDING_NAMES = 100
 """The number of names that may wait; further ones are dropped, which is reported."""
 FORGETTING_SPACING = 2.0
-"""The time between two names [s]: each is searched for in all files, and a flood of names must
-not block the process.
-"""
+"""The time between two names [s]: each is searched for in all files, and many names must not block the process."""
 
 _log = logging.getLogger(__name__)
 

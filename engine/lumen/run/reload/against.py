@@ -19,7 +19,7 @@ from lumen.statechart.type_checks import type_checks, type_name
 
 @dataclass(frozen=True)
 class MigrationOutcome:
-    """The outcome of a reload in some innermost states."""
+    """The outcome of a reload in certain innermost states."""
 
     states: tuple[str, ...]
     """The innermost active states before the reload."""
@@ -32,22 +32,25 @@ class MigrationOutcome:
     verdict: MigrationVerdict
     """The plan, delay or refusal itself."""
     count: int = 1
-    """Number of configurations with this outcome."""
+    """The number of configurations with this outcome."""
 
 
 @dataclass(frozen=True)
 class MigrationPreview:
-    """The outcomes in all explored configurations; `waiting` counts those beyond the bound."""
+    """The outcomes in all explored configurations."""
 
     rows: tuple[MigrationOutcome, ...]
     configurations: int
+    """The number of configurations found."""
     waiting: int
+    """The number of configurations that were not explored, because of the bound."""
 
 
 def preview(old: Project, new: Project, bound: int, tell: Callable[[int, int], None]) -> MigrationPreview:
-    """Return the outcome in every reachable configuration of the old behaviour, with equal outcomes counted together.
+    """Return the outcome in every reachable configuration of the old behaviour; equal outcomes are counted together.
 
-    `bound` limits the exploration; `tell` is called with how many configurations were explored, and how many wait.
+    `bound` limits the exploration; `tell` is called with the numbers of configurations that were explored and that
+    wait.
     """
     machine = old.machine
     language, epoch = old.languages[0], story_epoch(None, old.timezone)
@@ -65,7 +68,7 @@ def preview(old: Project, new: Project, bound: int, tell: Callable[[int, int], N
 
 
 def outcome_of(old: Project, new: Project, snapshot: Snapshot) -> MigrationOutcome:
-    """Return what a reload at this moment would do."""
+    """Return the outcome of a reload at this moment."""
     verdict = plan(old, new, snapshot, at=snapshot.at)
     before = _inner(old, snapshot)
     if isinstance(verdict, MigrationPlan):
@@ -83,13 +86,13 @@ def _inner(project: Project, snapshot: Snapshot) -> tuple[str, ...]:
 
 
 BOUND = 10_000
-"""Configurations of the old behaviour that are explored at most."""
+"""The greatest number of configurations of the old behaviour that are explored."""
 
 
 def against(old: Project, new: Project, tell: Callable[[int, int], None] = lambda *_: None) -> list[Diagnostic]:
     """Return the findings, each once, by place, for every reachable configuration of the old behaviour.
 
-    `tell` is called with how many configurations were explored, and how many are known.
+    `tell` is called with the numbers of configurations that were explored and that wait.
     """
     if old.machine == new.machine:
         return []
@@ -107,7 +110,7 @@ def _refused(new: Project, everywhere: MigrationPreview) -> Iterator[Diagnostic]
 
 
 def _moved(old: Project, new: Project, everywhere: MigrationPreview) -> Iterator[Diagnostic]:
-    """Yield the moves away from states that no longer exist, at the `onReload` that orders them."""
+    """Yield the moves away from states that no longer exist, at the `onReload` that directs them."""
     identity = Identity(old.machine, new.machine)
     for fate in everywhere.rows:
         if fate.outcome != "moved":
@@ -123,7 +126,9 @@ def _moved(old: Project, new: Project, everywhere: MigrationPreview) -> Iterator
 
 
 def _says(old: MachineDefinition, new: MachineDefinition, identity: Identity, path: str) -> NodePath | None:
-    """Return the place of the `onReload` for a state that no longer exists; None if it exists, or has none."""
+    """Return the place of the `onReload` for a state that no longer exists; None if it exists, or no `onReload`
+    applies.
+    """
     if identity.state(path) is not None:
         return None
     around: str | None = path

@@ -12,7 +12,7 @@ from lumen.language.diagnostics import Places
 from lumen.language.projects import Project
 
 PieceKey = tuple[str, str | None]
-"""A field of a project, and an entry of it if it is a mapping; None as the entry is the mapping itself."""
+"""A field of a project, and an entry of it if the field is a mapping; with None as entry it is the field itself."""
 Delta = dict[PieceKey, bytes | None]
 """The pieces of a project, packed; None for one that was sent with the previous project."""
 
@@ -36,7 +36,7 @@ class DeltaEncoder:
 
 
 class DeltaDecoder:
-    """An unpacker for all parcels of one sender, in their order."""
+    """An unpacker for all deltas of one sender, which must arrive in order."""
 
     def __init__(self) -> None:
         self._packed: dict[PieceKey, bytes] = {}
@@ -48,7 +48,7 @@ class DeltaDecoder:
         return dict(self._packed)
 
     def unpack(self, parcel: Delta) -> Project:
-        """Return the project; pieces that did not change are the objects of the previous one."""
+        """Return the project; pieces that did not change are the objects of the previous project."""
         packed = {piece: data or self._packed[piece] for piece, data in parcel.items()}
         pieces = {
             piece: self._pieces[piece] if self._packed.get(piece) == data else _unpacked(piece, data)
@@ -65,7 +65,7 @@ class DeltaDecoder:
 
 
 class _Documents(Mapping[str, Places]):
-    """The places of nodes by file; those of a file are unpacked on first use and cached for later steps."""
+    """The places of nodes by file; those of a file are unpacked on first use, and cached."""
 
     def __init__(self, packed: Mapping[str, bytes]) -> None:
         self._packed = packed

@@ -1,7 +1,7 @@
-"""An idle process for checking files, kept a while for the next user.
+"""An idle process for checking files, kept for a while for the next user.
 
-A start checks its files in a separate process, and the reloader needs one as well: it takes over the same process,
-which has imported everything and knows the files. So does the next start in the same program.
+A start checks its files in a separate process, and the reloader needs one as well: it reuses the same process, which
+has imported everything and knows the files. So does the next start in the same program.
 """
 
 import atexit
@@ -12,7 +12,7 @@ from lumen.run.reload.delta import DeltaDecoder
 from lumen.upkeep.judge_process import JudgeProcess
 
 LINGER = 10.0
-"""Time for which the process is kept [s]."""
+"""The time for which the process is kept [s]."""
 
 
 class IdleProcess(NamedTuple):
@@ -38,7 +38,7 @@ def keep(idle: IdleProcess) -> None:
 
 
 def take(command: tuple[str, ...]) -> IdleProcess | None:
-    """Return the kept process if it is alive and runs this command, else None; the new owner must end or keep it."""
+    """Return the kept process if it is alive and runs this command, else None; the caller must end or keep it."""
     with _turn:
         if not _idle or _idle[0][0].process.command != command:
             return None

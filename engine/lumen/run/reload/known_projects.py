@@ -1,7 +1,7 @@
 """Projects whose files were checked before, byte for byte and by this very engine, so that they are not checked again.
 
-The user's cache has what the checking process sent (run/reload/delta.py), so a start with yesterday's files needs no
-process to read them. Only projects without errors are kept, without their warnings.
+The user's cache has the delta that the checking process sent (run/reload/delta.py), so a start with unchanged files
+needs no process to read them. Only projects without errors are stored, and without their warnings.
 """
 
 import hashlib
@@ -20,29 +20,31 @@ from lumen.run.reload.delta import Delta, DeltaDecoder
 from lumen.upkeep.own_folders import CacheFolder
 
 _LEVEL = 1
-"""Compression level of zlib: the fastest."""
+"""The compression level of zlib: the fastest."""
 
 
 def recall(root: Path, files: Mapping[str, bytes]) -> Project | None:
-    """Return the project of these files, None if it was not kept."""
+    """Return the project of these files; None if it is not in the cache."""
     packed = CacheFolder("projects").read(_name(root, files))
     if packed is None:
         return None
     try:
         project: Project = DeltaDecoder().unpack(pickle.loads(zlib.decompress(packed)))
         return project.at(str(root.absolute()))
-    except Exception:  # the file may contain anything: the project is made again
+    except Exception:  # the file may contain anything: then the project is made again
         return None
 
 
 def keep(root: Path, files: Mapping[str, bytes], packed: Delta) -> None:
-    """Keep the packed project of these files."""
+    """Store the packed project of these files."""
     content = zlib.compress(pickle.dumps(packed, pickle.HIGHEST_PROTOCOL), _LEVEL)
     CacheFolder("projects").write(_name(root, files), content)
 
 
 def _name(root: Path, files: Mapping[str, bytes]) -> str:
-    """Return the cache's name for all that the project depends on; of unread models only their listing counts."""
+    """Return the cache's name for everything on which the project depends; of unread models
+    only their listing counts.
+    """
     digest = hashlib.sha256(f"{fingerprint(files)} {chosen_robot(files)} {engine()} {sys.version}".encode())
     for path, what, _ in sorted(listed(root / MODELS)):
         if f"{MODELS}/{path}" not in files:

@@ -1,4 +1,4 @@
-"""Accepted files before their activation, at the first tick at which the running state allows it."""
+"""Accepted files until their activation, at the first tick at which the running state allows it."""
 
 import logging
 import time
@@ -30,7 +30,7 @@ class Trial:
         self._home, self._away = waiting_state(project.machine), False
 
     def over(self, snapshot: Snapshot) -> bool:
-        """Return whether the visit has ended; called at each tick with the current snapshot."""
+        """Return whether the visit has ended; call this at each tick with the current snapshot."""
         home = self._home in snapshot.configuration
         self._away |= not home
         return home and self._away
@@ -55,7 +55,7 @@ class StagedBundle:
     changes: tuple[Change, ...]
     """Its changes from the bundle that runs."""
     validation: Validation | None = None
-    """The result of its check, None for a bundle that ran before."""
+    """The result of its check; None for a bundle that ran before."""
     who: str = "files"
     """The origin of the request: `files`, `command` or `trial`."""
     going: bool = False
@@ -67,7 +67,7 @@ class StagedBundle:
     since: float = field(default_factory=time.monotonic)
     """When its activation was requested [s]."""
     asked: object = None
-    """The last snapshot from which it could not continue."""
+    """The last snapshot from which it could not continue; None before any."""
     told: str = ""
     """The last reported reason for its delay."""
     objected: bool = False
@@ -75,18 +75,18 @@ class StagedBundle:
     trial: bool = False
     """Whether to activate it for one visitor."""
     between: bool = False
-    """Whether to wait for the end of a visit, for any time."""
+    """Whether to wait for the end of a visit, without a time limit."""
     kept: "StagedBundle | None" = None
-    """The bundle that waits again after this one's activation."""
+    """The bundle that waits again after this one's activation; None for none."""
     orders: list[ReloadRequest] = field(default_factory=list)
-    """Requests that get its verdicts."""
+    """The requests that receive its verdicts."""
 
 
 class MigrationQueue:
     """A queue of at most one bundle, `staged`, which `tick` activates, delays or refuses.
 
-    `applied` is called with each newly active bundle, `restore` writes the files of a rollback to the project's folder
-    and then reports it.
+    `applied` is called with each newly active bundle; `restore` writes the files of a rollback to the project's folder
+    and then reports the rollback.
     """
 
     def __init__(
@@ -100,7 +100,7 @@ class MigrationQueue:
         self._restore = restore
         self._behavior, self._notifier, self._records, self._applied = behavior, notifier, records, applied
         self.revision = 0
-        """Number of bundles that became active."""
+        """The number of bundles that became active."""
         self.staged: StagedBundle | None = None
         self._trial: Trial | None = None
         self._tried: StagedBundle | None = None
@@ -129,7 +129,7 @@ class MigrationQueue:
         self._notifier.tell(self._about(staged, "staged"))
 
     def attempt(self, staged: StagedBundle, order: ReloadRequest) -> None:
-        """Activate a bundle until a visit ends; then it waits as before."""
+        """Activate a bundle until a visit ends; afterwards it waits as before."""
         staged.trial = True
         self.stage(staged, order)
 
@@ -147,7 +147,7 @@ class MigrationQueue:
         self._notifier.tell(report, [order])
 
     def refuse(self, staged: StagedBundle, order: ReloadRequest) -> None:
-        """Refuse a bundle for a person."""
+        """Refuse a bundle on behalf of a person."""
         staged.orders.append(order)
         self._refuse(staged, BY_A_PERSON)
 
@@ -164,7 +164,7 @@ class MigrationQueue:
         self.staged = None
 
     def dry_run(self, staged: StagedBundle, order: ReloadRequest) -> None:
-        """Answer what a reload of a bundle would do."""
+        """Answer with the outcome of a reload of a bundle, which does not happen."""
         verdict = self._behavior.plan(staged.project, now=order.now)
         report = self._about(staged, "dry run")
         match verdict:
@@ -180,7 +180,7 @@ class MigrationQueue:
         order.answer({**report.to_json(), "lines": list(report.lines())})
 
     def tick(self, now: float) -> None:
-        """End probation and trial if their time has come, and try to activate the staged bundle."""
+        """End probation and trial if their time has passed, and try to activate the staged bundle."""
         if self.rollback_guard.over(now):
             self._records.approve(self.running.hash)
         if self._trial and self._trial.over(self._behavior.loop.runtime.snapshot):
@@ -251,7 +251,7 @@ class MigrationQueue:
         self._behavior.apply(staged.project, plan, begun)
 
     def _tell_all(self, report: ReloadReport, orders: list[ReloadRequest]) -> None:
-        """Report a newly active bundle; an internal error in that is logged and changes nothing."""
+        """Report a newly active bundle; an internal error in the report is logged and changes nothing."""
         try:
             if report.back and report.who == "command":
                 self._restore(report, orders)

@@ -1,4 +1,4 @@
-"""Notification of a reload's result to everyone who needs it."""
+"""Notification of a reload's result to people, modules and the journal."""
 
 import logging
 from collections.abc import Iterable
@@ -20,7 +20,7 @@ class ReloadNotifier:
     def __init__(self, behavior: LiveBehavior, narrator: Narrator, records: RunRecords) -> None:
         self._behavior, self._narrator, self._records = behavior, narrator, records
         self.last: ReloadReport | None = None
-        """The last result, None before the first."""
+        """The last result; None before the first."""
         self.last_at = datetime.now(UTC)
         """When it was reported (UTC)."""
 

@@ -18,7 +18,7 @@ from lumen.run.reload_journal import Journal
 from lumen.run.snapshot_store import SnapshotStore
 
 HEARTBEAT_PERIOD = 1.0
-"""Time between two marks that the run is alive, if nothing else is written [s]."""
+"""The time between two marks that the run is alive, if nothing else is written [s]."""
 
 DECISIONS_FILE = "decisions.json"
 
@@ -26,9 +26,9 @@ _log = logging.getLogger(__name__)
 
 
 class RunRecords:
-    """The records in a home; nothing is written without one, because another run of the project has it.
+    """The records in a home; without a home nothing is written, because another run of the project holds it.
 
-    Snapshots are written many times a second, and a disk may block for half a second, so a thread does that until
+    Snapshots are written many times a second, and a disk may block for half a second, so a thread writes them until
     `close`.
     """
 
@@ -73,29 +73,29 @@ class RunRecords:
         return self.keeper.files(hash) if self.keeper else None
 
     def begin(self, hash: str) -> None:
-        """Start the trial of a newly active bundle; the one before counts as no crash."""
+        """Start the trial of a newly active bundle; the end of the previous trial does not count as a crash."""
         self.annul()
         self._trial = hash
         if self.trials:
             self.trials.begin(hash)
 
     def approve(self, hash: str) -> None:
-        """Note that a bundle has passed its probation."""
+        """Record that a bundle has passed its probation."""
         if self.keeper and self.trials:
             self.keeper.approve(hash)
             self.trials.acquit(hash)
             self._trial = ""
 
     def condemn(self) -> None:
-        """Note that the bundle on trial failed while the exhibition survived."""
+        """Record that the bundle on trial failed while the exhibition survived."""
         self._trial = ""
 
     def died(self, hash: str) -> int:
-        """Return how often the exhibition ended before this bundle passed its probation."""
+        """Return how many times the exhibition ended before this bundle passed its probation."""
         return self.trials.count(hash) if self.trials else 0
 
     def annul(self) -> None:
-        """Note that the exhibition ends for reasons other than its files."""
+        """Record that the exhibition ends for reasons other than its files."""
         if self.trials and self._trial:
             self.trials.annul(self._trial)
         self._trial = ""
@@ -106,7 +106,9 @@ class RunRecords:
             self._desk.submit(self.keeper.prune, *(project.hash for project in projects if project))
 
     def keep(self, exhibition: BehaviorLoop) -> None:
-        """Write the behaviour's snapshot if it is new, else a sign of life when due; skip both during a write."""
+        """Write the behaviour's snapshot if it is new, else a sign of life when one is due; skip both while a write
+        runs.
+        """
         snapshot = exhibition.runtime.snapshot
         if self.keeper is None or not self._settled():
             return

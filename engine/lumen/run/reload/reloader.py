@@ -39,40 +39,45 @@ NEWER_ON_DISK = "the project's folder still has the newer files"
 UNTIL_APPLIED = "nothing saved there is activated until a person applies it"
 
 MODES = ("auto", "manual", "off")
-"""Activate saved files at once; only check them, and wait for `lumen reload --apply`; ignore them."""
+"""The ways in which saved files are used.
+
+They are activated at once; only checked, to wait for `lumen reload --apply`; or ignored.
+"""
 
 
 @dataclass(frozen=True, slots=True)
 class ReloadOptions:
-    """How saved files are used."""
+    """The way in which saved files are used."""
 
     mode: str = "auto"
     """One of `MODES`."""
     quiet: float = QUIET_PERIOD
-    """Time without a change after which files are read [s]."""
+    """The time without a change after which files are read [s]."""
     budget: float = BUDGET
-    """Time for playing the saved stories [s]."""
+    """The time for playing the saved stories, all together [s]."""
     seen: str = ""
-    """The hash of the files that the start refused; they are not checked until they change."""
+    """The hash of the files that the start refused; they are not checked until they change. Empty for none."""
 
 
 AUTO = ReloadOptions()
 
 
 class _RolledBack(NamedTuple):
-    """A rollback before its report: what was restored in the folder, and the check of the files there now."""
+    """A rollback before its report."""
 
     report: ReloadReport
     orders: list[ReloadRequest]
     restored: Restored
+    """The result of writing the files back."""
     validation: Validation
+    """The check of the files that are in the folder now."""
 
 
 class Reloader:
-    """A reloader that has saved files checked, stages every good bundle, and answers operators.
+    """Has saved files checked, stages every good bundle, and answers operators.
 
-    `worker` checks them, by default in another process. `applied` is called with each bundle that becomes active, and
-    `wake`, on any thread, when files have been checked.
+    `worker` checks the files, by default in another process. `applied` is called with each bundle that becomes active,
+    and `wake`, on any thread, when files have been checked.
     """
 
     def __init__(
@@ -115,7 +120,7 @@ class Reloader:
 
     @property
     def last(self) -> ReloadReport | None:
-        """The last report, None before the first."""
+        """The last report; None before the first."""
         return self._notifier.last
 
     @property
@@ -130,7 +135,7 @@ class Reloader:
         return self._behavior.loop.project
 
     def begin(self, news: Iterable[ReloadReport]) -> None:
-        """Start the probation of the running bundle, and report the reloads that this start was (`news`)."""
+        """Start the probation of the running bundle, and report `news`, the reloads that this start was."""
         self._records.begin(self._running.hash)
         for report in news:
             self._notifier.tell(report)
@@ -153,7 +158,7 @@ class Reloader:
 
     @property
     def mode(self) -> str:
-        """How saved files are used: one of `MODES`."""
+        """The way in which saved files are used: one of `MODES`."""
         return self._mode
 
     @property
@@ -162,7 +167,7 @@ class Reloader:
         return self._queue.rollback_guard.left(self._behavior.loop.clock.now()) is not None
 
     def offer(self, files: Mapping[str, bytes], answer: Callable[[Any], None], *, dry: bool = False) -> None:
-        """Reload files from elsewhere than the project's folder, between two visits; `answer` gets each verdict.
+        """Reload files that are not in the project's folder, between two visits; `answer` is called with each verdict.
 
         With `dry` they are only checked, and nothing that runs or waits changes.
         """
@@ -173,13 +178,15 @@ class Reloader:
         )
 
     def write(self, change: Callable[[], Mapping[str, bytes]]) -> None:
-        """Let `change` write the running files to the project's folder; it returns what is there afterwards."""
+        """Let `change` write the running files to the project's folder; it returns the files
+        that are there afterwards.
+        """
         self._watcher.write(change)
 
     def tick(self, now: float) -> None:
-        """Handle requests and the watcher's results, and apply what is staged.
+        """Handle requests and the watcher's results, and apply the staged bundle.
 
-        An internal error in this fails only the reload.
+        An internal error fails only the reload.
         """
         try:
             self._tick(now)
@@ -216,7 +223,7 @@ class Reloader:
         return validation
 
     def _restore(self, report: ReloadReport, orders: list[ReloadRequest]) -> None:
-        """Write the running files back to the folder on the watcher's thread, which then has the rollback reported."""
+        """Write the running files back to the folder on the watcher's thread, and then let the rollback be reported."""
         root, robot = Path(self._running.root), self._running.one_of_several
 
         def change() -> Mapping[str, bytes]:
@@ -230,7 +237,7 @@ class Reloader:
         self._watcher.write(change)
 
     def _tell_back(self, back: _RolledBack) -> None:
-        """Report a rollback, and where the newer files are; those still on disk wait for a person from now on."""
+        """Report a rollback and the folder of the newer files; newer files still on disk then wait for a person."""
         report, restored = back.report, back.restored
         if restored.trouble:
             self._newer_on_disk = f"{NEWER_ON_DISK} ({restored.trouble})"

@@ -11,11 +11,11 @@ from lumen.language.projects import Project
 from lumen.run.reload.validator import Validation, told
 
 MAX_LISTED = 100
-"""Changes and diagnostics that a report lists."""
+"""The greatest number of changes and of diagnostics that a report lists."""
 OPEN = ("waiting", "judging")
-"""Verdicts that another one follows."""
+"""Verdicts that are followed by another one."""
 START = "start"
-"""`who` of a reload at the start of a run."""
+"""The value of `who` for a reload at the start of a run."""
 
 
 @dataclass
@@ -25,35 +25,37 @@ class ReloadReport:
     verdict: str
     """`unchanged`, `staged`, `waiting`, `applied`, `refused`, `rolled back`, `dry run` or `status`."""
     who: str
-    """The origin: `files`, `command`, `trial`, `probation`, or the `start` of a run with files unlike the last."""
+    """The origin: `files`, `command`, `trial`, `probation`, or `start` for a run with files other
+    than the last run's.
+    """
     before: str = ""
-    """Hash of the bundle before."""
+    """The hash of the bundle before."""
     after: str = ""
-    """Hash of the bundle that it is about."""
+    """The hash of the bundle that was judged."""
     revision: int = 0
-    """Number of bundles that became active in this run."""
+    """The number of bundles that became active in this run."""
     changes: tuple[Change, ...] = ()
-    """Changes from `before` to `after`."""
+    """The changes from `before` to `after`."""
     validation: Validation | None = None
-    """The result of checking the files, None if they were not checked."""
+    """The result of checking the files; None if they were not checked."""
     waiting_for: str = ""
-    """The state that must be left first."""
+    """The state that must be left first; empty unless the verdict is `waiting`."""
     reason: str = ""
-    """Why the verdict was given, empty if that is clear."""
+    """The reason for the verdict; empty if that is clear."""
     hint: str = ""
-    """Advice for people, empty if there is nothing to do."""
+    """Advice for people; empty if there is nothing to do."""
     notes: tuple[str, ...] = ()
     """Further sentences for people."""
     back: bool = False
     """Whether the files ran before."""
     took: dict[str, float] = field(default_factory=dict)
-    """Durations [s] by activity."""
+    """Durations [s], by activity."""
     more: dict[str, Any] = field(default_factory=dict)
     """Further fields of the JSON data."""
     told_visits: bool = False
     """Whether the result for recorded visits was reported before."""
     details: list[dict[str, Any]] = field(default_factory=list)
-    """Data of each listed change (`change_data`)."""
+    """The data of each listed change (`change_data`)."""
 
     def compared(self, project: Project) -> "ReloadReport":
         """Return a copy with the details of its changes, which led to `project`."""
@@ -66,7 +68,7 @@ class ReloadReport:
 
     @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
-        """Everything wrong with the files; an error among it means that they were refused."""
+        """All findings in the files; an error among them means that the files were refused."""
         return self.validation.diagnostics if self.validation else ()
 
     @property
@@ -134,7 +136,7 @@ class ReloadReport:
         return {**validation, **self.took}
 
     def to_json(self) -> dict[str, Any]:
-        """Return the body on `lumen.config.status`, which is also the entry in the journal."""
+        """Return the body that is sent on `lumen.config.status`, which is also the entry in the journal."""
         found: dict[str, Any] = {
             "verdict": self.verdict,
             "final": self.verdict not in OPEN,
@@ -167,5 +169,5 @@ def reason_of(refusal: Refusal, project: Project) -> str:
 
 
 def what_for(verdict: MigrationDelay | Refusal) -> str:
-    """Return the state that must be left first."""
+    """Return the state that must be left first; empty if no state would help."""
     return verdict.what if isinstance(verdict, MigrationDelay) else verdict.state

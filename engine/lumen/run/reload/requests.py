@@ -14,7 +14,7 @@ COMMAND, STATUS = INTERNAL_ALIASES[CONFIG_COMMAND], INTERNAL_ALIASES[CONFIG_STAT
 REQUESTS = ("reload", "apply", "try", "refuse", "rollback", "dry-run", "status", "stop")
 """The verbs of requests."""
 WAITING = 100
-"""Requests that may wait for a tick; one more drops the oldest."""
+"""The number of requests that may wait for a tick; one more drops the oldest."""
 
 
 def command_key(robot: str) -> str:
@@ -36,9 +36,9 @@ class ReloadRequest:
     now: bool
     """Whether not to wait for current actions."""
     answer: Callable[[Any], None]
-    """Sends a body to the sender."""
+    """Sends a body to the sender of the request."""
     between: bool = False
-    """Whether to wait for the end of a visit, for any time."""
+    """Whether to wait for the end of a visit, without a time limit."""
 
 
 def request_from(message: Message, bus: Bus) -> ReloadRequest:

@@ -1,4 +1,4 @@
-"""The project's folder after a rollback: it gets the running files again, and the newer versions are kept elsewhere."""
+"""The project's folder after a rollback: the running files are written to it, and the newer versions kept elsewhere."""
 
 import os
 import shutil
@@ -21,14 +21,14 @@ _NEW = ".restored"
 
 
 class Restored(NamedTuple):
-    """The result of a restoration: the changed paths, and the folder `kept` with their newer versions.
-
-    `trouble` is why nothing was done, else empty.
-    """
+    """The result of a restoration."""
 
     paths: tuple[str, ...] = ()
+    """The changed paths."""
     kept: str = ""
+    """The folder with their newer versions."""
     trouble: str = ""
+    """Why nothing was done; empty if it was."""
 
     def lines(self) -> list[str]:
         """Return a sentence for each file, for a person."""
@@ -36,10 +36,10 @@ class Restored(NamedTuple):
 
 
 def restore(root: Path, wanted: Mapping[str, bytes] | None) -> Restored:
-    """Make the project's files `wanted`, all of them or none; the newer versions are kept in the home first.
+    """Make the project's files `wanted`, all of them or none; the newer versions are saved in the home first.
 
     fleet.yaml and files that Lumen does not read stay the same. A newer file that `wanted` lacks is moved away. A link
-    is never replaced. With `wanted` None, or after an error, nothing is done and the result has the `trouble`.
+    is never replaced. If `wanted` is None, or after an error, nothing is done and the result has the `trouble`.
     """
     if wanted is None:
         return Restored(trouble=NOT_KEPT)
@@ -64,7 +64,7 @@ def restore(root: Path, wanted: Mapping[str, bytes] | None) -> Restored:
 
 
 def _check(root: Path, paths: tuple[str, ...], there: Mapping[str, bytes]) -> None:
-    """Raise OSError for the first file that is a link, or can't be read and therefore not be kept."""
+    """Raise OSError for the first file that is a link, or that can't be read and so can't be saved."""
     for path in paths:
         file = on_disk(root, path)
         if file.is_symlink():
@@ -74,7 +74,7 @@ def _check(root: Path, paths: tuple[str, ...], there: Mapping[str, bytes]) -> No
 
 
 def _keep(root: Path, newer: Mapping[str, bytes]) -> Path:
-    """Write the newer versions to a new folder of the home; return that folder. Raises OSError."""
+    """Write the newer versions to a new folder of the home, and return that folder. Raises OSError."""
     folder = _new_folder(home_of(root) / KEPT_FOLDER)
     for path, content in newer.items():
         _write(folder / path, content)

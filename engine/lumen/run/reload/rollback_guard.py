@@ -1,4 +1,4 @@
-"""The probation of a newly active bundle: if it fails in its first seconds, the good one comes back."""
+"""The probation of a newly active bundle: if it fails in its first seconds, the last good bundle is restored."""
 
 import logging
 import time
@@ -13,7 +13,7 @@ from lumen.run.live_behavior import LiveBehavior
 from lumen.run.resuming import anew
 
 PERIOD = 10.0
-"""Length of the probation on the exhibition's clock [s]."""
+"""The length of the probation on the exhibition's clock [s]."""
 
 _log = logging.getLogger(__name__)
 
@@ -23,8 +23,8 @@ class RollbackGuard:
 
     A failure is an exception from the interpreter or from performing a command, or a behaviour that does not come to
     rest. It restores `good`, the last bundle that passed its probation, by a migration plan; the failed event is then
-    processed again. `back` is called afterwards. The bundle of the start is on probation too, but this run has none to
-    restore.
+    processed again. `back` is then called with the reason, the failed bundle and the duration [s]. The bundle of the
+    start is on probation too, but has no earlier one in this run.
     """
 
     def __init__(self, behavior: LiveBehavior, back: Callable[[str, Project, float], None]) -> None:
@@ -32,7 +32,7 @@ class RollbackGuard:
         self.good = _lean(behavior.loop.project)
         """The last bundle that passed its probation."""
         self.before: Project | None = None
-        """The bundle before the last reload, None before the first."""
+        """The bundle before the last reload; None before the first."""
         self._until: float | None = behavior.loop.clock.now() + PERIOD
         behavior.loop.rescuers.append(self)
 
@@ -48,11 +48,13 @@ class RollbackGuard:
         return True
 
     def left(self, now: float) -> float | None:
-        """Return the rest of the probation [s], None outside of one."""
+        """Return the rest of the probation [s]; None outside of a probation."""
         return None if self._until is None else max(0.0, round(self._until - now, 3))
 
     def rescue(self, error: Exception) -> Sequence[Command] | None:
-        """Restore the good bundle if the failed one is on probation, and return the commands for that; else None."""
+        """Restore the good bundle if the failed one is on probation, and return the commands of
+        the change; else None.
+        """
         bad = self._behavior.loop.project
         if self._until is None or self.good.hash == bad.hash:
             return None
@@ -74,5 +76,5 @@ class RollbackGuard:
 
 
 def _lean(project: Project) -> Project:
-    """Return a bundle to go back to, without the places of nodes in its files, which are most of it."""
+    """Return a bundle to go back to, without the places of nodes in its files, which take most of its memory."""
     return replace(project, documents={})

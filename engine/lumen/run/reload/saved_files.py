@@ -10,7 +10,7 @@ from lumen.run.reload.reloader import Reloader
 
 
 class ReloadPart(Part):
-    """The part that reloads saved files; it precedes the brain, so that bundles change between two steps."""
+    """The part that reloads saved files; it comes before the brain, so that bundles change between two steps."""
 
     patient = True
 
@@ -27,7 +27,7 @@ class ReloadPart(Part):
 class RecordsPart(Part):
     """The part that saves the behaviour's snapshot if the run `lasts`, and completes the journal at the end.
 
-    It follows the brain, and has the brain's `needs`.
+    It comes after the brain, and has the brain's `needs`.
     """
 
     patient = True

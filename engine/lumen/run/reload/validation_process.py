@@ -1,6 +1,6 @@
 """The process that checks files: `python -m lumen.run.reload.validation_process`, run by a `JudgeProcess`.
 
-Its memory and its time for each question are limited; the system ends it if it exceeds them.
+Its memory and its time for each question are limited; the operating system ends it if it exceeds them.
 """
 
 import time
@@ -25,8 +25,8 @@ class EnoughError(Exception):
 
 
 def failure(project: Project, story: str, seconds: float) -> "Rehearsal | None":
-    """Return how a story fails with a project; None if it does not, or not within `seconds` of real time."""
-    from lumen.run.rehearsal import rehearse  # half of this process's imports, only needed for stories
+    """Return how a story fails with a project; None if it does not fail within `seconds` [s] of real time."""
+    from lumen.run.rehearsal import rehearse  # half of this process's imports, needed only for stories
 
     until = time.perf_counter() + seconds
 

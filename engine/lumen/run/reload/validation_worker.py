@@ -1,9 +1,9 @@
 """Saved files checked in a separate process, so that they never delay a tick and never end the exhibition.
 
 Python runs one thread at a time. A thread that loads files would delay the exhibition for as long as the system makes
-the thread itself wait: some ticks on a busy machine. Of the result only what differs from the known project is sent:
-some milliseconds. The child is Lumen's own program, with a private pipe. What ends the child would have ended this
-process, so it is never tried here (docs/decisions/023).
+the thread itself wait: some ticks on a busy machine. Of the result only the differences from the known project are
+sent, which takes some milliseconds. The child is Lumen's own program, with a private pipe. Files that end the child
+would have ended this process, so they are never tried here (docs/decisions/023).
 """
 
 import sys
@@ -27,11 +27,11 @@ if TYPE_CHECKING:
 
 COMMAND = [sys.executable, "-m", "lumen.run.reload.validation_process"]
 Loaded = tuple[Project | None, tuple[Diagnostic, ...]]
-"""A project, None if it has errors, and its diagnostics."""
+"""A project (None if it has errors), and its diagnostics."""
 
 
 class FileJudge(Protocol):
-    """Something that loads files, and plays stories and visits."""
+    """A checker that loads files, and plays stories and visits."""
 
     def begin(self) -> None:
         """Prepare to load files soon."""
@@ -40,13 +40,13 @@ class FileJudge(Protocol):
         """Prepare to load files that differ little from these."""
 
     def load(self, files: Mapping[str, bytes]) -> Loaded:
-        """Return the project that the files make, None if they have errors, and everything wrong with them.
+        """Return the project that the files make, None if they have errors, and all findings in them.
 
-        Raises FatalFilesError if reading them ends the process that does.
+        Raises FatalFilesError if reading them ends the process that does so.
         """
 
     def play(self, project: Project, story: str, seconds: float) -> "Rehearsal | None":
-        """Return how a story fails with the last loaded project; None if it does not within `seconds` [s]."""
+        """Return how a story fails with the last loaded project; None if it does not fail within `seconds` [s]."""
 
     def visits(self, project: Project, running: str, budget: float) -> VisitsCheck:
         """Play recorded visits for at most `budget` [s] with the last loaded project; return the result.
@@ -75,13 +75,13 @@ class ValidationWorker:
         return self._receiver.packed
 
     def warm(self, files: Mapping[str, bytes]) -> None:
-        """Let a process that has not started read the running files, of which later saved files will differ in one."""
+        """Let a process that has not started read the running files, because later saved files will differ little."""
         if not self._process.started:
             with suppress(FatalFilesError):
                 self._load(files)
 
     def begin(self) -> None:
-        """Start the process, which takes about as long as files take to settle."""
+        """Start the process, which takes about as long as saved files take to settle."""
         with suppress(OSError):
             self._process.start()
 
@@ -92,7 +92,7 @@ class ValidationWorker:
         except FatalFilesError as error:
             if not started or error.overdue:
                 raise
-            return self._load(files)  # earlier files may have used up its memory, so a new process tries again
+            return self._load(files)  # earlier files may have used up its memory, so try again in a new process
 
     def play(self, project: Project, story: str, seconds: float) -> "Rehearsal | None":
         try:
@@ -116,7 +116,9 @@ class ValidationWorker:
         return (None if parcel is None else self._receiver.unpack(parcel)), diagnostics
 
     def _request(self, *question: Any) -> Any:
-        """Return its answer, or raise its error. Raises FatalFilesError if the process ended without one."""
+        """Return the process's answer to a question, or raise its error. Raises FatalFilesError if
+        it ends without one.
+        """
         try:
             self._process.start()
         except OSError as error:
@@ -131,7 +133,7 @@ class ValidationWorker:
 def load_apart(root: Path, files: Mapping[str, bytes]) -> Loaded:
     """Return the project of these files, and their diagnostics, read in a separate process.
 
-    A project that was read before is taken from the cache (run/reload/known_projects.py), without its warnings. Raises
+    A project that was read before comes from the cache (run/reload/known_projects.py), without its warnings. Raises
     FatalFilesError if the files end the process.
     """
     if project := recall(root, files):

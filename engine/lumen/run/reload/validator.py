@@ -25,37 +25,37 @@ from lumen.statechart.compiled_machine import prepare
 _log = logging.getLogger(__name__)
 
 BUDGET = 2.0
-"""Time for playing the saved stories, all together [s]."""
+"""The time for playing the saved stories, all together [s]."""
 
 
 @dataclass(frozen=True)
 class Validation:
-    """The result of checking saved files: a bundle, or what is wrong with them."""
+    """The result of checking saved files: a bundle, or the faults in them."""
 
     saved: SavedFiles
     """The files that were checked."""
     hash: str
-    """Their hash, empty if the check failed before it was known."""
+    """Their hash; empty if the check failed before it was known."""
     project: Project | None = None
-    """Their bundle, None if they have errors."""
+    """Their bundle; None if they have errors."""
     diagnostics: tuple[Diagnostic, ...] = ()
-    """Findings of lint."""
+    """The findings of lint."""
     running: Project | None = None
-    """The bundle that ran when they were checked."""
+    """The bundle that ran when they were checked; None if the check did not get so far."""
     changes: tuple[Change, ...] = ()
-    """Changes from `running`."""
+    """The changes from `running`."""
     failed: tuple[Rehearsal, ...] = ()
-    """Stories that were saved with them and fail."""
+    """The stories that were saved with them and fail."""
     fault: str = ""
-    """An internal error, empty if there was none."""
+    """An internal error in words; empty if there was none."""
     loading: float = 0.0
-    """Time for loading [s]."""
+    """The time for loading [s]."""
     playing: float = 0.0
-    """Time for playing stories [s]."""
+    """The time for playing stories [s]."""
     visits: VisitsCheck | None = None
-    """The result for recorded visits, None if they were not played."""
+    """The result for recorded visits; None if they were not played."""
     replaying: float = 0.0
-    """Time for playing visits [s]."""
+    """The time for playing visits [s]."""
 
     @property
     def objects(self) -> bool:
@@ -64,24 +64,24 @@ class Validation:
 
     @property
     def good(self) -> bool:
-        """Whether there is a bundle, and no story or check failed."""
+        """Whether the files make a bundle, and no story or check failed; recorded visits do not count."""
         return self.project is not None and not self.failed and not self.fault
 
     @property
     def took(self) -> float:
-        """Time for the whole check [s], without the quiet period."""
+        """The time for the whole check [s], without the quiet period."""
         return self.loading + self.playing + self.replaying
 
     def kept(self) -> "Validation":
-        """Return a copy without the files and the projects, to be kept."""
+        """Return a copy without the files and the projects, which take much memory."""
         return replace(self, saved=self.saved._replace(files={}), project=None, running=None)
 
 
 class BundleValidator:
     """A checker of files against the bundle that `running` returns; it is called on threads that may take long.
 
-    `worker` loads files and plays stories in another process: for one thread at a time, because it plays what it loaded
-    last.
+    `worker` loads files and plays stories in another process. Only one thread at a time uses it, because it plays the
+    stories of the project that it loaded last.
     """
 
     def __init__(self, worker: FileJudge, running: Callable[[], Project], budget: float = BUDGET) -> None:
@@ -124,7 +124,7 @@ class BundleValidator:
     def _replayed(
         self, running: Project, project: Project, found: Iterable[Change], *, always: bool = False
     ) -> VisitsCheck | None:
-        """Return the result for recorded visits, None if not wanted; an internal error does not fail the reload."""
+        """Return the result for recorded visits; None if none is wanted. An internal error does not fail the reload."""
         check = running.section(ReplayCheck)
         if always and not check.mode:
             check = ReplayCheck("warn")
@@ -149,7 +149,7 @@ class BundleValidator:
     def _play(
         self, project: Project, stories: Iterable[Story], urgent: Callable[[], bool] = lambda: False
     ) -> Iterator[Rehearsal]:
-        """Yield the stories that fail; those without time left are skipped."""
+        """Yield the stories that fail; stories for which no time is left are skipped."""
         until = time.perf_counter() + self._budget
         for story in stories:
             left = until - time.perf_counter()
@@ -165,7 +165,9 @@ def _saved_stories(project: Project, changed: Iterable[str]) -> list[Story]:
 
 
 def _touched_stories(project: Project, found: Iterable[Change], changed: Iterable[str]) -> list[Story]:
-    """Return the stories of changed behaviours, all if gestures changed: the project's story, then by length."""
+    """Return the stories of changed behaviours, or all if movements or routes changed: the project's story, then by
+    length.
+    """
     saved = _saved_stories(project, changed)
     files = {change.file for change in found if change.risk is not Risk.COSMETIC or change.kind == "text"}
     behaviors = {PurePosixPath(file).stem for file in files if file.startswith("behaviors/")}

@@ -12,7 +12,7 @@ from lumen.language.replay_check import CheckMode
 from lumen.run.replaying.replay_report import ReplayReport
 
 MAX_LISTED = 10
-"""Differences that are listed."""
+"""The number of differences that are listed."""
 
 
 class BudgetSpentError(Exception):
@@ -26,17 +26,17 @@ class VisitsCheck:
     report: ReplayReport = field(default_factory=ReplayReport)
     """Counts and differences."""
     mode: CheckMode = "warn"
-    """Whether differences are only reported (`warn`), or the files refused for them."""
+    """Whether differences are only reported (`warn`), or refuse the files (`refuse`)."""
     budget: float = 0.0
-    """Time for the check [s]."""
+    """The time for the check [s]."""
     complete: bool = True
     """Whether all visits were played within `budget`."""
     trouble: str = ""
-    """Why the check failed, empty if it did not."""
+    """Why the check failed; empty if it did not."""
 
     @property
     def objects(self) -> bool:
-        """Whether the files must be refused for it."""
+        """Whether the files must be refused because of a difference."""
         return self.mode == "refuse" and bool(self.report.differ)
 
     def lines(self) -> Iterator[str]:
@@ -78,13 +78,13 @@ class VisitsCheck:
 
 
 def check_visits(root: Path, new: Project, running: str, budget: float) -> VisitsCheck:
-    """Play the kept visits of the project in `root` with other files, for at most `budget` [s]; return the result.
+    """Play the recorded visits of the project in `root` with other files, for at most `budget` [s]; return the result.
 
     Differences that the files of the bundle `running` make as well do not count.
     """
     from lumen.journal.journal_folder import JOURNAL_FOLDER, JournalFolder
     from lumen.project.home import home_of
-    from lumen.run.replaying.journals import KeptBundles  # only needed to play visits
+    from lumen.run.replaying.journals import KeptBundles  # needed only to play visits
     from lumen.run.replaying.latest_visits import latest_first
     from lumen.run.replaying.other_files import VisitPlayer
 

@@ -21,14 +21,18 @@ from lumen.run.snapshot_store import SnapshotStore
 
 
 class KeptBundles:
-    """The bundles in the home of the project in `root`, each read on first use; `robot` is one of its `robots:`."""
+    """The bundles stored in the home of the project in `root`, each read on first use; `robot` is
+    one of its `robots:`.
+    """
 
     def __init__(self, root: Path, robot: str = "") -> None:
         self._root, self.robot, self._store = root, robot, SnapshotStore(Home(home_of(root, robot)))
         self._read: dict[str, Project | None] = {}
 
     def project(self, hash: str, behavior: str) -> Project | None:
-        """Return the project of a hash with that behaviour; None if it was not kept, or this version can't read it."""
+        """Return the project of a hash with that behaviour; None if it was not stored, or this
+        version can't read it.
+        """
         if hash not in self._read:
             self._read[hash] = self.load(hash)
         project = self._read[hash]
@@ -37,17 +41,17 @@ class KeptBundles:
         return project if project.behavior == behavior else replace(project, behavior=behavior)
 
     def load(self, hash: str) -> Project | None:
-        """Read a project anew; None if it was not kept or can't be read."""
+        """Read a project anew; None if it was not stored or can't be read."""
         files = self.files(hash)
         return check_files(self._root, files)[0] if files else None
 
     def files(self, hash: str) -> dict[str, bytes] | None:
-        """Return the files of a bundle as this robot reads them, None if they were not kept."""
+        """Return the files of a bundle as this robot reads them; None if they were not stored."""
         files = self._store.files(hash)
         return as_robot(files, self.robot) if files else None
 
     def machine(self, hash: str, behavior: str) -> MachineDefinition | None:
-        """Return the machine of `project`, or None."""
+        """Return the machine of `project`, else None."""
         project = self.project(hash, behavior)
         return project.machine if project else None
 
@@ -63,16 +67,18 @@ class ChosenJournal(NamedTuple):
     files: tuple[Path, ...]
 
     def entries(self) -> Iterator[RecordedEntry]:
-        """Yield the entries of the files; of a truncated file those before the cut. Raises JournalError."""
+        """Yield the entries of the files; of a truncated file those before the cut. Raises JournalError for an
+        unreadable file.
+        """
         for file in self.files:
             yield from read_journal(file).entries
 
 
 def chosen(root: Path, word: str | None, *, all: bool = False, robot: str = "") -> ChosenJournal:
-    """Return the journal in `root` that a word names: a file, `today`, `yesterday`, or a day as `2026-11-23`.
+    """Return the journal in `root` that a word means: a file, `today`, `yesterday`, or a day such as `2026-11-23`.
 
-    Without a word it is the last run, which may be a story; `all` means every kept visit. Raises UsageError if there is
-    none.
+    Without a word it is the last run, which may be a story; `all` means every recorded visit. Raises UsageError if
+    there is no such journal.
     """
     folder = home_of(root, robot) / JOURNAL_FOLDER
     if word and (word.endswith(JOURNAL_SUFFIX) or "/" in word):
@@ -104,7 +110,9 @@ def listed(root: Path, robot: str = "") -> list[tuple[Path, JournalHeader]]:
 
 
 def until(entries: Iterable[RecordedEntry], text: str) -> Iterator[RecordedEntry]:
-    """Yield the entries up to a time of day at the exhibition, `14:03` or `14:03:20`. Raises UsageError."""
+    """Yield the entries up to a time of day at the exhibition, `14:03` or `14:03:20`. Raises UsageError for other
+    texts.
+    """
     wanted, clock, limit = requested_time(text), JournalClock(), None
     for entry in entries:
         moment = clock.of(entry)
@@ -116,7 +124,7 @@ def until(entries: Iterable[RecordedEntry], text: str) -> Iterator[RecordedEntry
 
 
 def requested_time(text: str) -> time:
-    """Return the time of day that a person wrote. Raises UsageError if it is not such a time."""
+    """Return the time of day that a person wrote. Raises UsageError for any other text."""
     try:
         return time_of_day(text)
     except ValueError:

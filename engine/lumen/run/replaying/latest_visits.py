@@ -1,4 +1,4 @@
-"""The visits of a journal from the newest to the oldest, reading only as much of it as is used."""
+"""The visits of a journal from the newest to the oldest; only as much of it is read as is used."""
 
 from collections.abc import Iterator, Sequence
 from contextlib import suppress

@@ -27,7 +27,7 @@ def against(
     tell: Callable[[int], None] = lambda _: None,
     deadline: float | None = None,
 ) -> ReplayReport:
-    """Return the result of playing each visit with the other files; `tell` is called with how many were played.
+    """Return the result of playing each visit with the other files; `tell` is called with the number played so far.
 
     After `deadline` (`time.monotonic`) the remaining visits are not played, and count as unknown.
     """
@@ -45,8 +45,8 @@ def against(
 class VisitPlayer:
     """A player of visits with the files of `new`.
 
-    A difference is compared with what the bundle `running` would do, if the visit was recorded under other files: what
-    those have changed already is not reported. `hurry` may raise an error to end a visit.
+    If a visit was recorded under other files than the bundle `running`, a difference counts only if that bundle would
+    not cause it as well. `hurry` may raise an error to end a visit.
     """
 
     def __init__(
@@ -92,7 +92,7 @@ def _staged_like(old: Project, new: Project) -> Project:
 
 
 def takes(project: Project, command: BodyCommand) -> float:
-    """Return how long the recording robot takes for a command [s]."""
+    """Return the time that the recording robot takes for a command [s]."""
     if isinstance(command, Play):
         motion = project.motions.get(command.motion)
         return motion.duration if motion else USUAL_DURATION
@@ -110,7 +110,7 @@ _KNOWN = {row.command for row in COMMANDS}
 def with_machines(
     entries: Iterable[RecordedEntry], bundles: KeptBundles
 ) -> Iterator[tuple[RecordedEntry, MachineDefinition | None]]:
-    """Yield each entry with the machine that ran then, None if that was not kept."""
+    """Yield each entry with the machine that ran then; None if its files were not stored."""
     machine: MachineDefinition | None = None
     for entry in entries:
         if isinstance(entry, JournalJump):

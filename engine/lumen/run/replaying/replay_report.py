@@ -16,7 +16,7 @@ class ReplayDifference(NamedTuple):
     """A difference between a recorded visit and its replay."""
 
     visit: int
-    """Number of the visit, 0 outside of visits."""
+    """The number of the visit; 0 outside of visits."""
     at: float
     """When it happened [s since 1970]."""
     was: str
@@ -26,7 +26,7 @@ class ReplayDifference(NamedTuple):
     how: str = "differs"
     """`differs`, or with other files `says something else` or `ends elsewhere`."""
     place: str = ""
-    """File and line of the text that is said now, or an empty string."""
+    """The file and line of the new text; empty if unknown."""
 
     def to_json(self) -> dict[str, Any]:
         """Return it as JSON data."""
@@ -39,19 +39,19 @@ class ReplayReport:
     """Counts of visits and steps, and their differences."""
 
     visits: int = 0
-    """Number of visits."""
+    """The number of visits."""
     steps: int = 0
-    """Number of steps that were taken again."""
+    """The number of steps that were taken again."""
     same: int = 0
-    """Visits without a difference."""
+    """The number of visits without a difference."""
     redacted: int = 0
-    """Visits that were not compared, because a person was forgotten."""
+    """The number of visits that were not compared, because a person was forgotten."""
     lost: int = 0
-    """Lost entries."""
+    """The number of lost entries."""
     differ: list[ReplayDifference] = field(default_factory=list)
     """The first difference of each visit."""
     unknown: dict[str, int] = field(default_factory=dict)
-    """Entries that could not be compared, by the reason."""
+    """The numbers of entries that could not be compared, by the reason."""
 
     def to_json(self) -> dict[str, Any]:
         """Return it as `lumen replay --format json` prints it."""
@@ -96,13 +96,13 @@ class TakenAgain(NamedTuple):
     stepped: bool
     """Whether a step was taken."""
     unknown: str = ""
-    """Why it can't be compared, else empty."""
+    """Why it can't be compared; empty if it can."""
     differs: bool = False
     """Whether the replayed step differs from the recorded one."""
     was: str = ""
-    """The recorded step in words, empty if there is no difference."""
+    """The recorded step in words; empty if there is no difference."""
     now: str = ""
-    """The replayed step in words, empty if there is no difference."""
+    """The replayed step in words; empty if there is no difference."""
 
     @classmethod
     def of(cls, row: ReplayedStep) -> "TakenAgain":

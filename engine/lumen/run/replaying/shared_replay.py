@@ -1,4 +1,4 @@
-"""A long journal replayed by several workers, with the same report as from one."""
+"""A long journal replayed by several workers, with the same report as from one worker."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import closing
@@ -17,9 +17,9 @@ from lumen.run.workers.tasks import UnpackedKit, WorkKit, models_in
 from lumen.run.workers.workers import Workers
 
 VISITS = 20
-"""Visits in a task."""
+"""The number of visits in a task."""
 ENTRIES = 5_000
-"""Entries after which a task of steps ends, at the next jump."""
+"""The number of entries after which a task of steps ends, at the next jump."""
 NEW = "new"
 """The name of the other files among the bundles."""
 
@@ -27,7 +27,7 @@ Row = tuple[RecordedEntry, MachineDefinition | None]
 
 
 def replay_kit(journal: ChosenJournal, bundles: KeptBundles, new: Mapping[str, bytes] | None = None) -> WorkKit:
-    """Return what workers need for a journal: the files that ran then, and other files to try."""
+    """Return the files that workers need for a journal: those that ran then, and other files to try."""
     hashes = {header_of(file).bundle for file in journal.files}
     kept = {hash: files for hash in hashes if (files := bundles.files(hash))}
     return WorkKit({**kept, **({NEW: new} if new else {})}, models_in(journal.root))
@@ -40,7 +40,7 @@ def shared_replay(
     workers: Workers,
     tell: Callable[[int], None] = lambda _: None,
 ) -> ReplayReport:
-    """Return what `replayed` returns; `tell` is called with how many visits were counted."""
+    """Return the same report as `replayed`; `tell` is called with the number of visits counted so far."""
     count, parts, ready = ReplayCount(), dict[int, list[Row]](), dict[int, list[TakenAgain]]()
     following = 0
 
@@ -68,7 +68,9 @@ def shared_against(
     workers: Workers,
     tell: Callable[[int], None] = lambda _: None,
 ) -> ReplayReport:
-    """Return what `against` returns for the kit's new files; `tell` is called with how many visits were played."""
+    """Return the same report as `against` for the kit's new files; `tell` is called with the
+    number of visits played.
+    """
     reports, report, played = dict[int, ReplayReport](), ReplayReport(), 0
     every = visits(with_machines(entries, bundles))
     tasks = iter(lambda: (tuple(islice(every, VISITS)),), ((),))
@@ -83,7 +85,9 @@ def shared_against(
 
 
 def take_again(kit: UnpackedKit, entries: tuple[RecordedEntry, ...], led: bool) -> list[TakenAgain]:
-    """Take the steps of a task again. If it is `led`, the first entry only gives the snapshot, and has no result."""
+    """Take the steps of a task again; if the task is `led`, its first entry only gives the snapshot,
+    and has no result.
+    """
     taken = [TakenAgain.of(row) for row in replay(entries, _KitBundles(kit).machine)]
     return taken[1:] if led else taken
 
@@ -112,7 +116,8 @@ class _KitBundles(KeptBundles):
 def _parts(rows: Iterable[Row]) -> Iterator[tuple[list[RecordedEntry], list[Row]]]:
     """Yield the journal in parts, cut at jumps, which have a snapshot; a part is compared up to its last jump.
 
-    That jump also leads the next part, whose steps continue from it.
+    That jump is also the lead of the next part, whose steps continue from it. Each part comes after its lead, a list of
+    one entry or none.
     """
     lead, part = list[RecordedEntry](), list[Row]()
     for row in rows:

@@ -12,7 +12,7 @@ from lumen.run.replaying.journals import KeptBundles
 from lumen.run.setup import Setup
 
 LEAD_IN = 1.0
-"""Time before the first entry of a run [s]."""
+"""The time before the first entry of a run [s]."""
 
 
 def show(entries: Iterable[RecordedEntry], bundles: KeptBundles, setup: Setup, narrator: Narrator) -> None:

@@ -20,14 +20,15 @@ class ChosenVisit(NamedTuple):
 
     @property
     def when(self) -> str:
-        """Its time in words."""
+        """The time of the visit, in words."""
         return f"from {self.began:%H:%M:%S} to {self.ended:%H:%M:%S} on {self.began:%Y-%m-%d}"
 
 
 def chosen_visit(journal: ChosenJournal, bundles: KeptBundles, at: str | None) -> ChosenVisit:
-    """Return the visit that was under way at a time of day (`14:03` means any time in that minute), or the last visit.
+    """Return the visit that was under way at a time of day; the last visit if `at` is None.
 
-    Raises UsageError if there was none, which names the nearest, and if a visitor in it was forgotten.
+    `14:03` means any time in that minute. Raises UsageError if no visit was under way then, and names the nearest; also
+    if a visitor in it was forgotten.
     """
     entries, clock = list(journal.entries()), JournalClock()
     for entry in entries:
@@ -53,7 +54,7 @@ def _under_way(found: Sequence[ChosenVisit], at: str) -> ChosenVisit:
 
 
 def _distance(one: ChosenVisit, wanted: time, length: timedelta) -> timedelta:
-    """Return how far a time of day is from a visit, zero if the visit was under way."""
+    """Return the distance of a time of day from a visit; zero if the visit was under way."""
     days = {one.began.date(), one.ended.date()}
     moments = [datetime.combine(day, wanted, one.began.tzinfo) for day in days]
     return min(max(one.began - (moment + length), moment - one.ended, timedelta()) for moment in moments)

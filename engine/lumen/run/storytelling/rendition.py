@@ -21,17 +21,17 @@ class TickNotes:
     """The observations in one tick."""
 
     at: float
-    """Time of the tick [s]."""
+    """The time of the tick [s]."""
     active: frozenset[str] = frozenset()
-    """States that are active at its end."""
+    """The states that are active at its end."""
     entered: list[str] = field(default_factory=list)
-    """States that were entered."""
+    """The states that were entered."""
     said: list[str] = field(default_factory=list)
-    """Texts that began."""
+    """The texts that the robot began to say."""
     played: list[str] = field(default_factory=list)
-    """Motions that ended."""
+    """The motions that ended."""
     published: list[str] = field(default_factory=list)
-    """Routes of messages that were sent."""
+    """The routes of messages that were sent."""
 
     def __bool__(self) -> bool:
         return bool(self.entered or self.said or self.played or self.published)
@@ -43,9 +43,9 @@ class Rendition:
 
     rehearsal: Rehearsal
     ticks: list[TickNotes]
-    """Ticks in which something was observed."""
+    """The ticks in which something was observed."""
     acted: list[float]
-    """Times of the visitor's actions [s]."""
+    """The times of the visitor's actions [s]."""
     told: list[str]
     """The robot's observable actions, in words."""
 

@@ -27,9 +27,9 @@ from lumen.statechart.command_ids import result_of
 
 FACE_ROUTE = "face"
 GONE = 3.0
-"""Time without a face after which the visitor has left [s]."""
+"""The time without a face after which the visitor has left [s]."""
 COMMANDED = frozenset(("say", *(verb.name for verb in VERBS)))
-"""The verbs that a story may make fail; a walk to a place consists of others."""
+"""The verbs that a story may make fail; a walk to a place consists of other commands."""
 OF_ITSELF = ("arrived", "left", CLOCK_SET)
 """Events that the robot raises again by itself when it repeats its actions."""
 
@@ -38,12 +38,12 @@ class TimedAction(NamedTuple):
     """An action of the visitor."""
 
     at: float
-    """Its time [s]."""
+    """The time of the action [s]."""
     action: VisitorAction
     states: tuple[str, ...] = ()
-    """States that were entered last before it and are still active."""
+    """The states that were entered last before the action and are still active."""
     since: float = 0.0
-    """When those were entered [s]."""
+    """When those states were entered [s]."""
 
 
 def script(visit: RecordedVisit, project: Project, *, faces: bool) -> list[TimedAction]:
@@ -83,7 +83,7 @@ def broken(visit: RecordedVisit, verbs: Collection[str], *, hanging: bool, lasti
         elif hanging and hows == {"cancelled"}:
             found[kind] = "hangs"
         elif lasting and kind == "say" and took:
-            found[kind] = min(took)  # the shortest: a text that waits for another ends later
+            found[kind] = min(took)  # the shortest: a text that waits for another one ends later
     if hanging:
         found |= {kind: "hangs" for kind, _ in begun.values() if kind not in kinds}
     return {kind: how for kind, how in found.items() if kind in COMMANDED or kind in verbs}
@@ -132,7 +132,9 @@ def _action(event: Event, project: Project) -> VisitorAction:
 
 
 def _answers(visit: RecordedVisit) -> Iterator[TimedAction]:
-    """Yield the answers of the module `answers`, when each began; those from passages are found again by themselves."""
+    """Yield the answers of the module `answers`, at their beginnings; those from passages are
+    found again without them.
+    """
     began = dict[str, float]()
     said = dict[str, list[str]]()
     for entry in visit.inputs:

@@ -23,9 +23,9 @@ from lumen.statechart import Snapshot, deserialize, initial
 
 USUAL_WITHIN = 30.0
 LEAD = 2.0
-"""Longest time without events before a visit [s]."""
+"""The longest time without events before a visit [s]."""
 TRIES = 20
-"""Number of unmet expectations that are left out before the story is given up."""
+"""The number of unmet expectations that are left out before the story is given up."""
 
 Renamed = Callable[[Any], Any]
 """A function that replaces names in data."""
@@ -35,7 +35,7 @@ class _Way(NamedTuple):
     """A way to write the story."""
 
     lasting: bool
-    """Whether to set how long the robot speaks."""
+    """Whether to set the time that the robot speaks."""
     hanging: bool
     """Whether to set the verbs that never ended."""
     faces: bool
@@ -151,12 +151,12 @@ def _approved(project: Project, visit: RecordedVisit) -> tuple[StoryStep, ...]:
 
 
 def _alike(was: Sequence[str], now: Sequence[str]) -> int:
-    """Return how many of the recorded actions are repeated, in order from the beginning."""
+    """Return the number of recorded actions that are repeated, in order from the beginning."""
     return next((i for i, row in enumerate(was) if i >= len(now) or now[i] != row), len(was))
 
 
 def _checked(project: Project, draft: Story, rendition: Rendition, acts: Sequence[VisitorAction]) -> Story:
-    """Return the story with the observations as expectations, without those that can't be met at their time.
+    """Return the story with the observations as expectations, without those that are not met at their time.
 
     Raises UsageError if its events do not repeat.
     """
@@ -183,7 +183,7 @@ def _checked(project: Project, draft: Story, rendition: Rendition, acts: Sequenc
 def _steps(
     rendition: Rendition, acts: Sequence[VisitorAction], left_out: set[int], digits: int
 ) -> Iterator[tuple[int | None, VisitorAction]]:
-    """Yield the steps in order; expectations come with the index of their tick's notes."""
+    """Yield the steps in order; an expectation comes with the index of its tick's notes, an action with None."""
     rows: list[tuple[float, int, int]] = [(at, 0, i) for i, at in enumerate(rendition.acted)]
     rows += [(notes.at, 1, i) for i, notes in enumerate(rendition.ticks)]
     last, before = 0.0, frozenset[str]()

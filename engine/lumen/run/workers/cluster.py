@@ -15,13 +15,13 @@ from lumen.extras import demand
 SCHEME = "dask://"
 PACKAGE_NAME = "lumen-robot"
 ANSWER_TIMEOUT = 10.0
-"""Longest wait for the scheduler's answer [s]."""
+"""The longest wait for the scheduler's answer [s]."""
 
 
 def cluster_address(text: str) -> str:
     """Return `tcp://HOST:PORT` for `dask://HOST:PORT`.
 
-    Raises UsageError for anything else, or if the extra is not installed.
+    Raises UsageError for any other text, or if the extra is not installed.
     """
     host, _, port = text.removeprefix(SCHEME).rpartition(":")
     if not host or not port.isdecimal() or not 0 < int(port[:6]) < 65536:

@@ -11,12 +11,12 @@ from lumen.language.counts import counted
 from lumen.run.workers.tasks import TaskHead, do_task
 
 IN_FLIGHT = 256
-"""Tasks that are submitted at once: their data is in memory, and a cluster may have as many workers."""
+"""The number of tasks that are submitted at once: their data is in memory, and a cluster may have as many workers."""
 _log = logging.getLogger(__name__)
 
 
 class Crew(Protocol):
-    """Something that does rounds of tasks."""
+    """A performer of rounds of tasks."""
 
     def results(self, tasks: Iterable[tuple[Any, ...]]) -> Iterator[tuple[int, Any]]:
         """Yield the number and the result of each task of this round, as they finish."""
@@ -37,13 +37,13 @@ class Staff(NamedTuple):
     """An executor with its workers."""
 
     executor: Executor
-    """Runs the tasks."""
+    """The executor that runs the tasks."""
     head: TaskHead
     """The data that comes with each task."""
     blob: Any
-    """The kit as tasks get it."""
+    """The kit, in the form that tasks receive."""
     lost: tuple[type[BaseException], ...]
-    """Errors of a task whose worker is lost."""
+    """The errors of a task whose worker is lost."""
 
     def give(self, task: tuple[Any, ...]) -> Future[Any]:
         """Submit a task."""

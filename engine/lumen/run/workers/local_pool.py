@@ -16,7 +16,7 @@ from typing import Any, NoReturn
 from lumen.upkeep.threads import WatchedThread
 
 TERMINATED = 128 + signal.SIGTERM
-"""Exit code after SIGTERM."""
+"""The exit code after SIGTERM."""
 
 
 @contextmanager
@@ -29,7 +29,7 @@ def local_pool(count: int, folder: Path) -> Iterator[Executor]:
     pool = ProcessPoolExecutor(count, get_context("spawn"), _begin, (str(folder),))
     try:
         with interrupts_blocked():
-            pool.submit(os.getpid)  # starts all of them
+            pool.submit(os.getpid)  # this starts all of them
         yield pool
     except BaseException:
         for process in set(active_children()) - before:
@@ -41,7 +41,10 @@ def local_pool(count: int, folder: Path) -> Iterator[Executor]:
 
 @contextmanager
 def working_folder() -> Iterator[Path]:
-    """Make a folder for the time of the work; SIGTERM then ends the process like Ctrl-C, so it is deleted too."""
+    """Make a folder for the time of the work.
+
+    SIGTERM then ends the process like Ctrl-C, so that the folder is deleted.
+    """
     handled = threading.current_thread() is threading.main_thread() and (
         signal.getsignal(signal.SIGTERM) is signal.SIG_DFL
     )

@@ -72,7 +72,7 @@ class UnpackedKit:
         return root
 
     def project(self, bundle: str = "") -> Project | None:
-        """Return the project of a bundle, None if its files have errors or there is no such bundle."""
+        """Return the project of a bundle; None if its files have errors or no bundle has that name."""
         if bundle not in self._projects:
             files = self.kit.bundles.get(bundle)
             self._projects[bundle] = check_files(self.root, files)[0] if files else None
@@ -85,7 +85,7 @@ def name_of(packed: bytes) -> str:
 
 
 PACKAGES = ("lumen-robot", "mujoco", "dm-control", "numpy")
-"""Packages on which results depend, besides Python."""
+"""The packages on which results depend, besides Python."""
 
 _alone = threading.Lock()
 """A cluster's worker may have several threads, but the simulation's compiler supports only one."""
@@ -95,19 +95,19 @@ class TaskHead(NamedTuple):
     """The data that comes with every task."""
 
     function: Callable[..., Any]
-    """Does a task."""
+    """The function that performs a task."""
     engine: str
-    """Description of the sender's software."""
+    """A description of the sender's software."""
     kit: str
-    """Name of the kit."""
+    """The name of the kit."""
     folder: str = ""
-    """Folder for the unpacked kit; empty for the worker's own."""
+    """The folder for the unpacked kit; empty for the worker's own."""
 
 
 def do_task(head: TaskHead, packed: bytes | str, task: tuple[Any, ...]) -> Any:
-    """Return the function's result for the kit and a task. `packed` is the kit, or the path of its file.
+    """Return the result of the function for the kit and a task.
 
-    Raises WorkersError if the sender has other software.
+    `packed` is the packed kit, or the path of its file. Raises WorkersError if the sender has other software.
     """
     if head.engine != engine():
         raise WorkersError(

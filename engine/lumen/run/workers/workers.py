@@ -16,7 +16,7 @@ from lumen.run.workers.tasks import TaskHead, UnpackedKit, WorkKit, engine, name
 
 Result = TypeVar("Result")
 MAX_WORKERS = 1024
-"""Largest number of processes."""
+"""The greatest number of processes."""
 
 
 class Workers:
@@ -46,7 +46,7 @@ class Workers:
 
     @contextmanager
     def crew(self, function: Callable[..., Result], kit: WorkKit, most: int) -> Iterator[Crew]:
-        """Open a crew that does rounds of such tasks, `most` of them at a time, until the context ends."""
+        """Open a crew that performs rounds of such tasks, at most `most` at a time, until the context ends."""
         with working_folder() as folder, ExitStack() as staffed:
             if not self.address and min(self.count, most) <= 1:
                 own = UnpackedKit(kit, "kit", folder)
@@ -64,7 +64,7 @@ class Workers:
 
     @contextmanager
     def _opened(self, packed: bytes, tasks: int, folder: Any) -> Iterator[tuple[Executor, Any, str, Any]]:
-        """Yield an executor, the kit for its tasks, their folder for it, and the errors of lost workers."""
+        """Yield an executor, the kit for its tasks, the folder to unpack it in, and the errors of lost workers."""
         if self.address:
             with cluster(self.address, packed) as (executor, blob):
                 yield executor, blob, "", lost_in_cluster()
@@ -102,5 +102,5 @@ def workers_of(text: str | None) -> Workers:
 
 
 def cores() -> int:
-    """Return how many cores this process may use."""
+    """Return the number of cores that this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
