@@ -1,10 +1,10 @@
-"""The table of speeds: what a user calls, how fast it is here, and what is to be reached.
+"""Print the table of speeds: what was measured, the goal, and the figure on this machine.
 
     python benchmarks/all.py [--rows WORD] [--markdown]
 
-Each figure comes from the script that measures it at length, in a shorter form. Ratios are against the named peer in
-this run. Processor time where a machine may be busy, and wall time where somebody waits. Needs Node and npm for
-XState, RabbitMQ for the broker; a row that lacks what it needs says so.
+Each figure comes from the script that measures it in detail, in a shorter form. Ratios compare with the named peer in
+the same run. Figures that other programs on the machine could disturb are processor time; figures for which people
+wait are wall time. XState needs Node and npm, and the broker needs RabbitMQ; a row without its program reports that.
 """
 
 import argparse

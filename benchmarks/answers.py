@@ -1,11 +1,11 @@
-"""How many questions in other words than the passages' are answered, and how many wrongly, by each method.
+"""Measure how many questions in other words than the passages' get an answer, and how many a wrong one, by each method.
 
     python benchmarks/answers.py [--curve] [--package] [--folder DIR]
 
 The passages are those of knowledge/. Weights and the least probability of an answer are fitted on
 knowledge/questions/visitors.yaml (each question is judged by a fit to all others) and tested on answers.yaml in this
-folder, which has no influence on the fit. Targets: recall of 90 %, 2 % wrong, 20 ms. The questions were written by the
-author of the passages, so real visitors will use other words.
+folder, which has no influence on the fit. Targets: recall of 90 %, 2 % wrong, 20 ms. The questions were written by
+the author of the passages, so real visitors will use other words.
 """
 
 import argparse

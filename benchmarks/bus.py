@@ -1,11 +1,11 @@
-"""How many messages a second cross a bus, and how long a question takes; against pika itself, in one run.
+"""Measure the messages per second of a bus, and the time of a question, compared with pika itself in the same run.
 
     python benchmarks/bus.py [--bus URL] [--seconds S]
 
-Without `--bus` a private RabbitMQ is started on loopback. pika's BlockingConnection sends bytes that are JSON already
-and takes them as they are; ours makes JSON of a body, sends, confirms, receives, decodes and hands it to a handler.
-Telemetry is sent by pika without confirms, as one would; ours has the broker's word for every message all the same,
-and is counted until the last has it.
+Without `--bus`, a private RabbitMQ runs on loopback. pika's BlockingConnection sends bytes that are already JSON, and
+does not decode the bytes that it receives. Lumen's bus makes JSON of a body, sends it, gets the confirm, receives and
+decodes it, and passes it to a handler. pika sends telemetry without confirms, as is usual. On Lumen's bus the broker
+confirms every message, and the measurement ends with the last confirm.
 """
 
 import argparse

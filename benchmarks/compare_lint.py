@@ -1,8 +1,8 @@
-"""The same ten mistakes, and what other checkers say of them: prints the table of docs/lint-compared.md.
+"""Print the table of docs/lint-compared.md: ten mistakes, and the findings of each checker.
 
 The other checkers are those available to a YAML author. check-jsonschema, the YAML language server and Spectral get
-Lumen's schemas, so they know every key. ESPHome checks its own kind of project with a corresponding mistake. Give their
-folders:
+Lumen's schemas, so they know every key. ESPHome checks its own kind of project with a corresponding mistake. Give
+their folders:
 
     python benchmarks/compare_lint.py --python VENV --node FOLDER
 

@@ -1,14 +1,15 @@
-"""What a console costs: the latest tick of the exhibition, CPU time of both, and bytes for each page.
+"""Measure the cost of a console: the latest tick of the exhibition, CPU time of both, and bytes for each page.
 
     python benchmarks/console.py [--robot simulation|recording] [--clients 50] [--seconds S] [--rounds N]
 
-The shipped tour with its visitor in real time; the console and the pages that listen are processes of their own. One of
-the pages never reads. A tick is late by as much as it comes after its 50th of a second: told are the 99th of a hundred
-and the latest, and how many came a whole period late. A crowded machine has late ticks without a console, too. So they
-are measured in pairs: each run has a block without and one with it, one after the other, now this first and now that;
-`more` is by how much more ticks came late with the console than without in the same run, the median of the runs and the
-quarter on either side. Where nought lies between these two, the console makes none late that the machine does not.
-Watchers look at the camera, as pages do that show what the robot sees.
+The shipped tour runs with its visitor in real time; the console and the listening pages are separate processes. One
+of the pages never reads. The delay of a tick is the time since the 50th of a second at which it was due. The table
+has the 99th percentile, the latest tick, and the number of ticks that were a whole period late.
+
+A busy machine has late ticks without a console, too, so they are measured in pairs: each run has a block without and
+a block with the console, in alternating order. `more` is the number of additional late ticks in the block with the
+console: the median of the runs, and the quartiles. If 0 is between the quartiles, the console causes no late ticks.
+Watchers request the camera's images, like pages that show them.
 """
 
 import argparse

@@ -1,9 +1,10 @@
-"""When the ears listen (listening.py), and how much is understood: PocketSphinx alone, and told what the tour expects,
-in all its states or in the active ones.
+"""Measure when the ears listen (listening.py), and how many sentences they understand.
 
-espeak-ng says sentences that no story has, in three voices each; a synthetic voice is no visitor, and white noise no
-hall: the ratio is what counts. A sentence is understood if the same phrases and questions of its state are heard in it
-as in its text; what is false is a phrase heard in talk about something else.
+PocketSphinx is measured alone, with the expected sentences of all states of the tour, and with those of the active
+states. espeak-ng says sentences that are in no story, in three voices each. A synthetic voice is not a visitor, and
+white noise is not a hall, so only the ratios matter. A sentence is understood if the same phrases and questions of
+its state are found in the recognised text as in the original. A false one is a phrase that is found in talk about
+something else.
 """
 
 import argparse

@@ -1,18 +1,26 @@
-"""What a visitor notices when a part of an exhibition fails, and how long until the tour goes on where it was.
+"""Measure what a visitor notices when a part of an exhibition fails, and how long until the tour continues.
 
     python benchmarks/faults.py [--count N] [--seed S] [--robot recording|simulation] [--parts brain,robot]
                                 [--faults killed,paused3] [--moments dance] [--json FILE]
 
-Robot, brain and motion module are processes of their own on a private RabbitMQ, each behind a wire of its own.
-Somebody visits: at each moment of the tour that is asked for a part is killed (and begun again at once, as systemd
-does), paused for 3 or 15 s, cut off, half-open (nothing comes through, and nobody is told) or delayed (0.5 s each way)
-for 8 s; when the tour goes on, the same again. The visitor says everything once, and stands there.
+The robot, the brain and the motion module are separate processes on a private RabbitMQ, each with a connection that
+this program can disturb. A scripted visitor says everything once, and stays. At each requested moment of the tour,
+one part fails in one of these ways:
 
-`silent` is how long the robot says nothing [s], from the fault on; `on` how long it takes from the end of the fault
-(for what is killed: from the kill) until the tour is where it was, and stays; `said` what the visitor hears that is no
-part of it; TWICE names motions that were begun again though nobody asked. `rest` is whether the robot rested, with a !
-where it had to and did not, or did for nothing: it has to where its brain was away for 5 s and it lives; how long a
-start takes is the machine's. Without `--count` all are run; with it a sample.
+- it is killed, and started again at once, as systemd does;
+- it is paused for 3 or 15 s;
+- it is cut off for 8 s;
+- its connection is half-open for 8 s: no data arrives, and neither side is informed;
+- its connection is delayed for 8 s, by 0.5 s in each direction.
+
+When the tour has continued, the same fault occurs again.
+
+`silent` is the time for which the robot says nothing, from the beginning of the fault [s]. `on` is the time from the
+end of the fault (for a killed part, from the kill) until the tour is back in its state and stays there [s]. `said`
+has the sentences that the visitor hears and that are not part of the tour. TWICE names motions that began again
+without a request. `rest` is whether the robot rested, with a ! if it did not rest although it must, or rested without
+need: it must rest if its brain was unavailable for 5 s and the robot itself is running. The time of a start depends
+on the machine. Without `--count` all combinations run; with it, a sample.
 """
 
 import argparse

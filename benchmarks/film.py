@@ -1,7 +1,7 @@
-"""How fast a film is drawn: frames a second of `lumen run --video`, and what a frame costs at each quality.
+"""Measure how fast a film is drawn: frames per second of `lumen run --video`, and the cost of a frame at each quality.
 
-`python benchmarks/film.py` films the first seconds of the shipped tour. The limit is OpenGL in software: what a frame
-costs without anything around it, on all cores, is printed beside it.
+`python benchmarks/film.py` films the first seconds of the shipped tour. OpenGL in software is the limit, so the
+script also prints the cost of a frame alone, on all cores.
 """
 
 import argparse

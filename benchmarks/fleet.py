@@ -1,10 +1,10 @@
-"""What robots of one house cost in one process, in real time: `python benchmarks/fleet.py --robots 1,5,10,20`.
+"""Measure the cost of one house's robots in one process, in real time: `python benchmarks/fleet.py --robots 1,5,10,20`.
 
-Recording robots with the small example's behaviour and the senses of `lumen.yaml` wait for a visitor. Of each number
-of them: messages and bytes on the bus a second, processor time of a core, memory of the process that nobody shares
-(PSS) for each robot, and ticks that came more than a tick after the longest nap. `--silent` leaves the senses out: what
-an idle robot costs beside them. The line through them is drawn out to 200 robots. What saved files, journals and
-recordings cost besides is not in it.
+Recording robots with the behaviour of the small example and the senses of `lumen.yaml` wait for a visitor. For each
+number of robots, the table has the messages and bytes per second on the bus, the processor time as a share of a core,
+the memory for each robot that no other process shares (PSS), and the ticks that came more than a tick after the
+longest nap. `--silent` leaves the senses out, and shows the cost of an idle robot without them. A line through these
+figures is extended to 200 robots. It does not include the cost of saved files, journals and recordings.
 """
 
 import argparse

@@ -1,8 +1,9 @@
-"""What a centre needs for so many robots: bytes of a digest and of an order, processor time of each, and of a rollout.
+"""Measure a centre with many robots: bytes of a digest and an order, processor time of each, and of a rollout.
 
     python benchmarks/fleet_centre.py --robots 20,200,10000
 
-Presences as robots tell them go into a centre on a bus in this process; no broker takes part. Ten robots are a house.
+A centre on a bus in this process receives presence messages in the form in which robots send them; there is no
+broker. A house has ten robots.
 """
 
 import argparse

@@ -1,13 +1,13 @@
-"""How the head follows a face: prints the table of docs/research.md, for a kinematic head and under physics.
+"""Measure how the head follows a face: print the table of docs/research.md, for a kinematic head and under physics.
 
     python benchmarks/head.py [--plot FILE.png] [--visitors 60]
 
-The head begins 15 deg beside the face in yaw and 8 deg in pitch; images are taken every `tick`, known `latency` later.
-Overshoot is a part of the way there, settled is the time after which it stays within 0.5 deg of the face, rest is how
-far beside it stands in the end; each is the worse of yaw and pitch. The walk is somebody who passes 1.5 m ahead at
-0.5 m/s: how far from the middle of the image their face is at most, as a part of half the image (1 is its edge).
-With --visitors, visitors of all sizes about the stage under physics instead, and the worst of them: tests/fuzzy holds
-the same ones.
+At the start the head points 15 deg away from the face in yaw and 8 deg in pitch; an image is taken every `tick`, and
+is known `latency` later. Overshoot is a fraction of that angle, settled is the time after which the head stays within
+0.5 deg of the face, and rest is the remaining error at the end; each is the worse of yaw and pitch. For the walk a
+person passes at 1.5 m with 0.5 m/s: the figure is the greatest distance of the face from the middle of the image, as
+a fraction of half the image (1 is its edge). With --visitors, it measures visitors of all sizes on the stage under
+physics, and prints the worst results; tests/fuzzy tests the same visitors.
 """
 
 import argparse

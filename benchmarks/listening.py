@@ -1,9 +1,10 @@
-"""When the ears listen: what finds speech, and how often the robot hears itself.
+"""Measure when the ears listen: what detects speech, and how often the robot hears itself.
 
     python benchmarks/listening.py
 
-All voices are espeak-ng's, all noise is made, and the echo is one wall's: no hall, no visitor and no loudspeaker was
-recorded. What counts is how the rows differ. A sound has a second of rest before and after what is said.
+All voices are those of espeak-ng, all noise is artificial, and the echo is that of one wall: no hall, no visitor and
+no loudspeaker was recorded, so only the differences between the rows matter. A sound has a second of silence before
+and after the sentence.
 """
 
 import argparse

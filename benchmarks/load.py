@@ -1,11 +1,11 @@
-"""How soon a stop is accepted, and what the senses keep of their rates, while messages flood in on a crowded machine.
+"""Measure how soon a stop is accepted, and the rates of the senses, while messages flood in on a busy machine.
 
     python benchmarks/load.py [--robot recording|simulation] [--crowd N] [--rate 2000] [--stops 100] [--kinds face,all]
 
-The exhibition is a process of its own on a private RabbitMQ, whoever floods it another, and this one times the stops:
-from sending one until the report `accepted` is here. `--crowd 4` starts four processes for each core that do nothing
-but compute. The first row is without a flood; the senses of the others are compared with that. At the end of each
-the time is taken until a text is said that is sent when the flood is over.
+The exhibition is a separate process on a private RabbitMQ, and so is the sender of the flood. This process measures
+each stop from the time at which it is sent until the report `accepted` arrives. `--crowd 4` starts four processes for
+each core that only compute. The first row is without a flood; the senses of the other rows are compared with it.
+After each flood a text is sent, and the time until the robot says it is measured.
 """
 
 import argparse

@@ -1,10 +1,10 @@
-"""How long an editor waits for `lumen lsp`: from the last key to the findings, and from a key to its completion.
+"""Measure how long an editor waits for `lumen lsp`: from the last key to the findings, and from a key to its completion.
 
-The project is the shipped one, whose tour has grown to 2,000 lines by visits that follow one another. A client types
-words into it over standard input and output, a key every 60 ms, and then asks what an editor asks (symbols, folds,
-lenses, hints: whatever the server offers). Findings count once they are those of the whole word; completion is asked
-right behind its key, while the project is being checked. The last key may also close a quote that hid the rest of the
-file.
+The project is the shipped one, with a tour that was extended to 2,000 lines by repeated visits. A client types words
+into it over standard input and output, one key every 60 ms, and then sends the requests of an editor (symbols, folds,
+lenses, hints: everything that the server offers). Findings count once they are those of the whole word. Completion is
+requested right after its key, while the project is being checked. The last key may also close a quote that hid the
+rest of the file.
 
     python benchmarks/lsp.py
 """

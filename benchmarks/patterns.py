@@ -1,10 +1,11 @@
-"""What a regular expression costs, by Lumen and by those who could do it for Lumen, in µs of CPU time.
+"""Measure the cost of regular expressions, in Lumen and in the engines that it could use, in µs of CPU time.
 
     python benchmarks/patterns.py [--rounds N]
 
-For each pattern: reading it, looking through a sentence that a visitor says, and through 1,000 characters that were
-chosen to be hard for it. Medians of several rounds, in which the engines take turns. `google-re2` is measured where it
-is installed. Python's `re` tries one alternative after the other: what takes it longer than a second is left out.
+For each pattern, it measures reading the pattern, searching a visitor's sentence, and searching 1,000 characters that
+are difficult for this pattern. Figures are medians of several rounds, in which the engines take turns. `google-re2`
+is measured if it is installed. Python's `re` tries one alternative after the other: searches for which it needs more
+than a second are left out.
 """
 
 import argparse

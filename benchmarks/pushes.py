@@ -1,4 +1,4 @@
-"""How hard the simulated NAO is to push over: standing, walking and dancing.
+"""Measure which pushes the simulated NAO withstands: standing, walking and dancing.
 
     python benchmarks/pushes.py [--robots N]
 

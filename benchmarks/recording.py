@@ -1,11 +1,12 @@
-"""What recording costs a running tour: CPU time, size on the disk, and the latest tick beside that of a tour without.
+"""Measure the cost of recording a running tour: CPU time, size on the disk, and the latest tick.
 
     python benchmarks/recording.py [--robot recording|simulation] [--seconds S] [--rounds N]
 
-The shipped tour with its visitor in real time, by turns without a recording, with one without images, and with all. A
-tick is late by as much as it comes after its 50th of a second; the greatest of the median round is told. On a crowded
-machine these are upper bounds. CPU time is that of the whole process: what a recording costs is the difference between
-rows, and with images it includes taking and packing them, which nobody does where nobody listens.
+The shipped tour runs with its visitor in real time: in turn without a recording, with one without images, and with a
+complete one. The delay of a tick is the time since the 50th of a second at which it was due; the table has the
+greatest delay of the median round. On a busy machine, these delays are upper bounds. CPU time is that of the whole
+process, so the cost of a recording is the difference between two rows. With images it includes drawing and encoding
+them, which Lumen does only for subscribers.
 """
 
 import argparse

@@ -1,10 +1,10 @@
-"""A tour under load while its files are edited in every way that editors save, a third of the edits broken.
+"""Run a tour under load while its files are edited in every way in which editors save; a third of the edits are broken.
 
     python benchmarks/reload.py [--edits N] [--bus URL] [--quiet SECONDS] [--seed N]
 
-A visitor is followed by the robot's head, 200 events a second are counted by the behaviour, and a writer makes one
-edit after the other, each as soon as there is a verdict on the one before. What runs must always be a state of the
-files that the writer completed, and a good one; no event may be lost; nothing may grow.
+The robot's head follows a visitor, the behaviour counts 200 events a second, and a writer makes one edit after the
+other, each as soon as the one before has its verdict. The running files must always be a valid state that the writer
+completed; no event may be lost; nothing may grow.
 """
 
 import argparse

@@ -1,10 +1,10 @@
-"""What it costs to know that data fits its JSON Schema, by Lumen and by those who could tell Lumen, in µs of CPU time.
+"""Measure the cost of checking data against a JSON Schema, in Lumen and in other validators, in µs of CPU time.
 
     python benchmarks/schemas.py [--rounds N]
 
-For each kind of file: compiling its schema, and looking at all the shipped files of that kind. Then the bodies of
-messages, from a face's place to a camera's image, and what it costs to say why one does not fit. Medians of several
-rounds, in which the validators take turns. `fastjsonschema` is measured where it is installed.
+For each kind of file, it measures compiling the schema and checking all shipped files of that kind. Then it measures
+the bodies of messages, from the position of a face to a camera image, and the explanation of an error. Figures are
+medians of several rounds, in which the validators take turns. `fastjsonschema` is measured if it is installed.
 """
 
 import argparse

@@ -1,11 +1,12 @@
-"""What Lumen Server does while the robot dances: the rate and the worst gap of each sense, and how soon it answers.
+"""Measure Lumen Server while the robot dances: the rate and the worst gap of each sense, and the time to an answer.
 
     python benchmarks/server.py [--bus amqp://USER:PASSWORD@HOST/] [--robot simulation|recording]
 
-The robot is a process of its own (`lumen run --only robot`), this one a module on the same broker: a private one,
-unless one is named. Gaps are told in periods of the route, once as the robot has them, once as the messages arrive
-here. An image's way is from when it was taken to when it is here, beside the fastest of all. As in the paper's Fig. 10
-and 11; its server executed commands on one thread, so that a dance delayed every later one by its 13 s.
+The robot is a separate process (`lumen run --only robot`), and this process is a module on the same broker, which is
+a private one by default. Gaps are measured in periods of the route: once where the robot makes the readings, and once
+where the messages arrive. The delay of an image is the time from its capture to its arrival, compared with the
+fastest image. The paper has these measurements in Fig. 10 and 11; its server executed commands on one thread, so a
+dance delayed every later command by its 13 s.
 """
 
 import argparse

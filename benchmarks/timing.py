@@ -1,4 +1,4 @@
-"""Measures events per second of CPU time."""
+"""Measure events per second of CPU time."""
 
 import gc
 from collections.abc import Callable

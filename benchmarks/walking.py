@@ -1,4 +1,4 @@
-"""How well a simulated biped walks: how fast, how straight, over what; and whether it knows where it is.
+"""Measure the walk of a simulated biped: its speed, its accuracy on several floors, and the error of its odometry.
 
     python benchmarks/walking.py [--robots N] [--model NAME]
 

@@ -1,10 +1,10 @@
-"""What workers get done: one motion played by many robots, in this process, in two, and on a cluster of this machine.
+"""Measure the speed of workers: many robots play one motion, in this process, in two, and on a cluster of this machine.
 
     python benchmarks/workers.py [--robots 24] [--motion goodbye]
 
 It prints robots per second and the ratio to one process, including all starts: of processes, of the simulation, and of
 compiled models. Dask's scheduler and workers run on this machine too, so more workers than cores have no benefit: their
-rows show the overhead of the cluster. That is wall time, so the machine must be quiet. Processor time is valid on a
+rows show the overhead of the cluster. Both figures are wall time, so the machine must be quiet. Processor time is valid on a
 busy machine as well; it is that of all processes, including their starts.
 """
 
