@@ -1,4 +1,4 @@
-"""An alert: something that people elsewhere must know."""
+"""An alert about trouble, for people who are not at the exhibition."""
 
 import platform
 from datetime import datetime
@@ -12,9 +12,10 @@ TEST = "test"
 
 
 class Alert(NamedTuple):
-    """An event in a line of Lumen's own words, without names or words of visitors."""
+    """A report of one trouble, in a line of Lumen's own words: it contains no visitor's name or words."""
 
     kind: str
+    """A key of `KINDS`, or `TEST`."""
     text: str
     about: str = ""
     """Distinguishes alerts of one kind, such as the part that is lost."""
@@ -38,7 +39,7 @@ class Origin(NamedTuple):
     parts: tuple[str, ...] = ()
 
     def body(self, alert: Alert) -> dict[str, Any]:
-        """Return the alert as JSON data; `text` alone is complete, as chat programs expect."""
+        """Return the alert as JSON data. Its `text` is complete by itself, because chat programs show nothing else."""
         return {
             "kind": alert.kind,
             "text": self.line(alert),
@@ -60,7 +61,9 @@ class Origin(NamedTuple):
 
 
 def one_line(text: str) -> str:
-    """Return the text on one line, without characters that control a terminal or a mail's header."""
+    """Return the first 500 characters of the text on one line, without those that control a terminal or a mail's
+    header.
+    """
     return " ".join("".join(sign if sign.isprintable() else " " for sign in text).split())[:500]
 
 

@@ -24,7 +24,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Return 0 if all recipients were reached, else 1. Raises UsageError if there are none."""
+    """Send a test alert to each recipient and print the results; return 0 if all were reached, else 1.
+
+    Raises UsageError if there are no recipients.
+    """
     root = own_project(options.project)
     settings = main_settings(root)
     if settings is None or not (alerts := settings.section(Alerts)).to:

@@ -18,7 +18,7 @@ LONGEST_WAIT = 30.0
 
 
 class Ration:
-    """Limits the rate of alerts: equal ones that are held back become one, with a count."""
+    """Limits alerts of the same kind and `about` to one in `interval` [s]; those held back become one, with a count."""
 
     def __init__(self, interval: float) -> None:
         self._interval = interval
@@ -26,13 +26,15 @@ class Ration:
         self._given: dict[tuple[str, str], float] = {}
 
     def take(self, alert: Alert) -> None:
-        """Add an alert; an equal one that is held back is merged with it."""
+        """Hold back an alert until it is due; it is merged with one of the same kind and `about` that is held back."""
         key = (alert.kind, alert.about)
         earlier = self._held.pop(key, None)
         self._held[key] = alert.after(earlier) if earlier else alert
 
     def due(self, now: float, *, quiet: bool) -> Iterator[Alert]:
-        """Yield the alerts that may be sent at `now` [s, monotonic], in their order, and count them as sent."""
+        """Yield the alerts that may be sent at `now` [s, monotonic], in their order, and count them as sent; none if
+        `quiet`.
+        """
         if quiet:
             return
         self._given = {key: at for key, at in self._given.items() if now - at < self._interval}
@@ -41,12 +43,12 @@ class Ration:
             yield self._held.pop(key)
 
     def remaining(self) -> Iterator[Alert]:
-        """Yield all alerts that are held back."""
+        """Remove and yield all alerts that are held back."""
         while self._held:
             yield self._held.pop(next(iter(self._held)))
 
     def wait(self, now: float) -> float | None:
-        """Return the time until an alert may be due [s]; None without one that is held back."""
+        """Return the time until an alert may be due [s], at most `LONGEST_WAIT`; None if none is held back."""
         if not self._held:
             return None
         soonest = min(self._given.get(key, now) + self._interval * (key in self._given) for key in self._held)
@@ -72,7 +74,7 @@ def time_of_day() -> TimeOfDay:
 class Courier:
     """Accepts alerts without waiting (`put`), and delivers them one at a time.
 
-    `tell` receives a line for each outage with its reason. `clock` is monotonic [s].
+    `tell` receives a line for each outage with its reason. `clock` returns monotonic time [s], `day` the time of day.
     """
 
     def __init__(
@@ -96,20 +98,22 @@ class Courier:
         self._thread.start()
 
     def put(self, alert: Alert) -> None:
-        """Deliver an alert if the recipient wants its kind."""
+        """Queue an alert for delivery if the recipient wants its kind."""
         if alert.kind in self.recipient.kinds:
             with self._changed:
                 self._received.append(alert)
                 self._changed.notify_all()
 
     def end(self, until: float) -> None:
-        """Deliver all waiting alerts by that time [s, monotonic], then end; returns at once."""
+        """Deliver the waiting alerts until that time [s, monotonic], or drop them in quiet hours, then end; return at
+        once.
+        """
         with self._changed:
             self._ending, self._until = True, until
             self._changed.notify_all()
 
     def join(self) -> None:
-        """Wait for the end."""
+        """Wait until the thread has ended, at most until the time that `end` received."""
         self._thread.join(max(0.0, self._until - self._clock()))
 
     def _run(self) -> None:
@@ -118,7 +122,7 @@ class Courier:
                 self._tell_until_told(alert)
 
     def _ended(self) -> bool:
-        """Wait until there is something to do; return whether that is to end."""
+        """Wait for an alert, a due time or `end`; return True if the thread must end."""
         with self._changed:
             if not (self._received or self._ending):
                 self._changed.wait(self._ration.wait(self._clock()))

@@ -150,7 +150,7 @@ class AlertPart(Part, Observer):
         self._stopped: bool | None = None
 
     def recovered(self, found: Resumption | FreshStart) -> None:
-        """Report that the earlier run ended unexpectedly."""
+        """Report that the earlier run ended unexpectedly, unless that was reported already."""
         if isinstance(found, Resumption):
             if not found.told:
                 self._desk("crashed", f"it ended unexpectedly, and continues after {found.away:.0f} s")
@@ -158,7 +158,7 @@ class AlertPart(Part, Observer):
             self._desk("crashed", "it ended unexpectedly, and starts from the beginning")
 
     def stepped(self, step: Step) -> None:
-        """Report a stop by a person."""
+        """Report a stop by a person, and the loss or the return of one of the project's own modules."""
         if step.event and step.event.name == "stop" and _by_person(step.event):
             self._desk("stopped", "a person stopped it")
         if step.event and (found := told_of_own(step.event, self._own)):
@@ -195,12 +195,12 @@ class AlertPart(Part, Observer):
         self._look_at_disk("records", self._kept())
 
     def use(self, project: Project) -> None:
-        """Use the recipients of another bundle."""
+        """Use the recipients and the own modules of another bundle."""
         self._desk.use(project.section(Alerts))
         self._own = own_modules(project.modules)
 
     def helpless(self, reason: str) -> None:
-        """Report that the robot rests because Lumen could not be stopped any more."""
+        """Report that the robot rests because a part failed without which nobody could stop the robot."""
         self._desk("crashed", "a part of Lumen failed. The robot rests, because nobody could have stopped it any more")
 
     def part_stopped(self, part: str) -> None:
@@ -233,7 +233,7 @@ class AlertPart(Part, Observer):
             self._away = float("inf")
 
     def _look_for_brain(self) -> None:
-        """Report to people that the robot's brain is gone, unless it has ended properly."""
+        """Report that the robot's brain is lost, unless it ended properly, or that it is back."""
         if self._presence is None or BRAIN in self._parts or ROBOT_PART not in self._parts:
             return
         if self._presence.find(BRAIN):
@@ -247,7 +247,7 @@ class AlertPart(Part, Observer):
             self._desk("lost", "the brain no longer responds, and the robot rests", BRAIN)
 
     def _look_for_stop(self) -> None:
-        """Report a stop of a robot without a brain, which would otherwise report it."""
+        """Report that a person stopped the robot, if no brain is connected that reports it."""
         before, self._stopped = self._stopped, self._person_stopped()
         if self._stopped and before is False and self._presence and self._presence.find(BRAIN) is None:
             self._desk("stopped", "a person stopped it")

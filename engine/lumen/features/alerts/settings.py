@@ -29,18 +29,19 @@ SMTP_PORTS: Mapping[str, int] = {"starttls": 587, "tls": 465, "none": 25}
 
 @dataclass(frozen=True, slots=True)
 class Webhook:
-    """A POST with JSON to `url`, or to the URL in the environment variable NAME if that is `$NAME`."""
+    """A POST with JSON to `url`, or to the URL in the environment variable NAME if `url` is `$NAME`."""
 
     url: str
 
 
 @dataclass(frozen=True, slots=True)
 class Mail:
-    """A mail by SMTP; `security` is a key of `SMTP_PORTS`."""
+    """A mail by SMTP."""
 
     host: str
     port: int
     security: str
+    """A key of `SMTP_PORTS`."""
     sender: str
     to: tuple[str, ...]
 
@@ -71,7 +72,7 @@ class QuietHours:
 
 @dataclass(frozen=True, slots=True)
 class Recipient:
-    """A recipient of alerts."""
+    """A recipient of alerts, with its place `where` in lumen.yaml."""
 
     channel: AlertChannel
     kinds: tuple[str, ...] = tuple(KINDS)

@@ -1,4 +1,4 @@
-"""The ways of an alert: an email, the standard input of a program, or a POST with JSON."""
+"""Delivers an alert by email, to the standard input of a program, or as a POST with JSON."""
 
 import json
 import os
@@ -53,7 +53,9 @@ def send_mail(mail: Mail, line: str, body: dict[str, Any]) -> None:
 
 
 def _connected(mail: Mail) -> smtplib.SMTP:
-    """Return the connected server, encrypted and logged in as configured. Raises what smtplib raises."""
+    """Return the connected server, encrypted and logged in as configured. Raises the errors of smtplib, and ValueError
+    if the password would be sent unencrypted.
+    """
     name = os.environ.get(USER, "")
     if name and mail.security == "none":
         raise ValueError(f"the password in {PASSWORD} is not sent unencrypted: write `security: starttls` or `tls`")
@@ -79,7 +81,7 @@ PROGRAM_TIMEOUT = 30.0
 
 
 def run_program(command: Sequence[str], body: dict[str, Any], root: Path) -> None:
-    """Run the program in the project's folder and wait for its end.
+    """Run the program in the project's folder with `body` as JSON on its standard input, and wait for its end.
 
     Raises UndeliveredError unless its exit code is 0.
     """
@@ -141,7 +143,7 @@ class _Stay(urllib.request.HTTPRedirectHandler):
 
 
 def post(url: str, body: dict[str, Any]) -> None:
-    """Send the body; any status from 200 to 299 is a success. Raises UndeliveredError."""
+    """Send the body as JSON; a status from 200 to 299 is a success. Raises UndeliveredError otherwise."""
     if url.startswith("$"):
         url = _of_variable(url[1:])
     head = {"Content-Type": "application/json", "User-Agent": "lumen"}

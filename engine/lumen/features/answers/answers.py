@@ -51,7 +51,7 @@ def request(model: str, asked: Mapping[str, Any], passages: Sequence[str], tools
 
 
 def tool_name(event: str) -> str:
-    """Return an event's name as that of a tool: letters, digits and `_`."""
+    """Return the name of the tool for an event: its first 64 characters, with `_` for all but letters and digits."""
     return re.sub(r"[^A-Za-z0-9_]", "_", event)[:64]
 
 
@@ -68,7 +68,7 @@ class Allowance:
         self._visit, self._asked = 0, 0
 
     def refusal(self, visit: int, now: float) -> str:
-        """Return why another question is not allowed at `now` [s]; if it is, count it and return an empty text."""
+        """Return why another question is not allowed at `now` [s]; count one that is, and return an empty text."""
         while self._times and self._times[0] <= now - HOUR:
             self._times.popleft()
         if visit != self._visit:
@@ -119,8 +119,9 @@ class Answers(Module):
         self._allowance.hour, self._allowance.visitor = self._model.hour, self._model.visitor
 
     def idle(self) -> float | None:
-        """Compute vectors of passages while there is no question, if that needs no network; return 0.0 if more may be
-        missing.
+        """Compute some vectors of passages while there is no question, if that needs no network.
+
+        Return the time until the next call [s]: 0.0 while more may be missing, else None.
         """
         try:
             return 0.0 if self._embeddings and self._embeddings.prepare(self.project) else None

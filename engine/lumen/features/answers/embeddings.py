@@ -85,8 +85,10 @@ class Embeddings:
     def find(
         self, project: Project, question: str, language: str, deadline: float, wanted: Callable[[], bool], most: int
     ) -> MeantPassages:
-        """Return the passages for a question by `deadline` (`time.monotonic`). Raises ModuleError if no vectors are
-        available.
+        """Return the passages for a question by `deadline` (`time.monotonic`), with the answers of the `most` nearest
+        ones.
+
+        Raises ModuleError if no vectors are available.
         """
         from lumen.retrieval.features import joined, words
         from lumen.retrieval.ranking import NEVER, Weights

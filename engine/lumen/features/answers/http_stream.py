@@ -24,11 +24,10 @@ PIECE = 4_096
 def answered(
     url: str, body: Any, secret: str, deadline: float, wanted: Callable[[], bool], most: int = MAX_BYTES
 ) -> Iterator[tuple[str, Iterator[bytes]]]:
-    """Yield the answer's media type and an iterator of its bytes, until `deadline` (`time.monotonic`) or while
-    `wanted`.
+    """Send `body` as JSON, and yield the answer's media type and an iterator of its bytes.
 
-    An answer of more than `most` bytes, with its head, is refused. Redirects are not followed. Raises ModuleError with
-    the reason; its text never contains the key.
+    Redirects are not followed. Raises ModuleError with the reason, which never contains the key: at `deadline`
+    (`time.monotonic`), if `wanted` returns False, for more than `most` bytes with the head, or a status other than 200.
     """
     parts = urlsplit(url)
     connection: socket.socket | None = None

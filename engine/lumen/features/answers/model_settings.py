@@ -23,7 +23,9 @@ class ServerSettings(NamedTuple):
         return cls(said["url"], said["name"], said.get("key", ""))
 
     def secret(self) -> str:
-        """Return the key from the environment, empty if none is needed. Raises ModuleError if it is not set."""
+        """Return the key from the environment, empty if none is needed. Raises ModuleError if it is not set, or is not
+        printable ASCII.
+        """
         if not self.key:
             return ""
         if not (found := os.environ.get(self.key, "").strip()) or not found.isascii() or not found.isprintable():

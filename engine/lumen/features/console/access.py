@@ -78,7 +78,7 @@ class Access:
         return found
 
     def sign(self, person: Person) -> str:
-        """Return a new session of that person, as the value of a cookie."""
+        """Return a new session of that person, valid for `SESSION_TIME`, as the value of a cookie."""
         said = [person.role.word, person.name[:MAX_NAME], time.time() + SESSION_TIME, secrets.token_hex(8)]
         body = base64.urlsafe_b64encode(json.dumps(said).encode()).decode()
         return f"{body}.{self._mark(body)}"

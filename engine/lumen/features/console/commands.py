@@ -67,7 +67,11 @@ class Commands:
         self._tasks = set[asyncio.Task[None]]()
 
     def send(self, id: str, robot: str, command: str, fields: Fields, person: Person) -> PageCommand:
-        """Send a command and return it; an id sent before returns its command again. Raises UsageError if malformed."""
+        """Send a command to a robot, or with `ALL` to all, and return it; a known id returns its command without
+        sending.
+
+        Raises UsageError if the command is malformed.
+        """
         if known := self._known.get(id):
             return known
         one = PageCommand(id, robot, command, person.by)

@@ -29,19 +29,26 @@ MAX_ROWS = 1_000
 
 @dataclass
 class DayVisit:
-    """A visit: its first and last position in the journal, its beginning and end [s since 1970], the visitor's name and
-    language if known, and how many sentences were heard (`asked`) and not understood (`missed`).
-    """
+    """A visit of a day."""
 
     number: int
+    """Its number on that day, from 1."""
     first: int
+    """The position of its first entry in the journal."""
     last: int
+    """The position of its last entry so far."""
     began: float
+    """The time of its first entry [s since 1970]."""
     ended: float
+    """The time of its last entry [s since 1970]."""
     visitor: str = ""
+    """The visitor's name, empty if unknown."""
     language: str = ""
+    """The language of the robot's last speech, empty if unknown."""
     asked: int = 0
+    """The number of sentences that were heard."""
     missed: int = 0
+    """The number of these that were not understood, or had no answer."""
 
     def to_json(self) -> dict[str, Any]:
         seconds = round(self.ended - self.began, 1)
@@ -54,12 +61,15 @@ class DayVisit:
 
 
 class AwaitedAnswer(NamedTuple):
-    """A question to the knowledge (`ask`) without an answer so far, the sentence that was heard, and its visit."""
+    """A question to the knowledge (`ask`) that has no answer so far."""
 
     text: str
+    """The question."""
     language: str
     heard: str
+    """The visitor's sentence that led to it, in lower case."""
     visit: DayVisit | None
+    """The visit in which it was asked, None outside visits."""
 
 
 class DayMark(NamedTuple):
@@ -96,14 +106,22 @@ class Day:
     visits: list[DayVisit] = field(default_factory=list)
     between: list[QuietStretch] = field(default_factory=list)
     asked: Counter[str] = field(default_factory=Counter)
+    """The sentences that were heard, in lower case."""
     missed: Counter[str] = field(default_factory=Counter)
+    """The sentences that were not understood, or had no answer, in lower case."""
     answers: Counter[str] = field(default_factory=Counter)
+    """The texts that the robot said."""
     languages: Counter[str] = field(default_factory=Counter)
+    """The languages of the visits."""
     unanswered: Counter[tuple[str, str]] = field(default_factory=Counter)
+    """Questions to the knowledge without an answer, each with its language."""
     said: Counter[HeardSentence] = field(default_factory=Counter)
     rows: dict[str, list[str]] = field(default_factory=dict)
+    """The keys of the rows that a state could hear, by its behaviour and name."""
     asking: "dict[str, AwaitedAnswer]" = field(default_factory=dict)
+    """Questions to the knowledge that may still be answered, by the ids of their commands."""
     hours: Counter[int] = field(default_factory=Counter)
+    """The number of visits that began in each hour of the day."""
     falls: int = 0
     marks: list[DayMark] = field(default_factory=list)
 
@@ -137,7 +155,9 @@ COUNTED = ("asked", "missed", "answers", "languages")
 
 
 def day_of(entries: Iterable[RecordedEntry], machines: MachineSource, wanted: date | None) -> Day:
-    """Return a day from the entries of a journal, by the exhibition's clock; the last with visits by default."""
+    """Return the day `wanted` from the entries of a journal, by the exhibition's clock; None is the last day with
+    visits.
+    """
     clock, watch, replayer = JournalClock(), VisitWatch(), Replayer(machines)
     days: dict[date, Day] = {}
     visit: DayVisit | None = None

@@ -20,7 +20,7 @@ class ToldPage(NamedTuple):
 
 
 class EntryClock:
-    """Follows the entries of a page.
+    """Computes the time of each entry of a page; call `of` with the entries in their order.
 
     If the page has no `epoch`, the first entry that has one counts; if none does, the last entry is assumed to be of
     this moment.

@@ -24,7 +24,7 @@ class Exchange:
         self.echo, self.nobody = asyncio.Event(), asyncio.Event()
 
     async def taken(self, timeout: float) -> bool:
-        """Return True if the bus has it within `timeout` [s] and did not return it as undeliverable."""
+        """Return True if the bus has the message within `timeout` [s] and did not return it as undeliverable."""
         return await _first(timeout, self.echo, self.nobody) and not self.nobody.is_set()
 
     async def answer(self, timeout: float) -> Any:

@@ -123,7 +123,7 @@ async def _read(receive: Receive, headers: Mapping[str, str]) -> tuple[bytes, tu
 
 
 def _given(body: bytes, receive: Receive) -> Receive:
-    """Return a `receive` that first gives a body that was read already, then what follows."""
+    """Return a `receive` whose first message is the body that was read already."""
     read: list[Message] = [{"type": "http.request", "body": body, "more_body": False}]
 
     async def again() -> Message:

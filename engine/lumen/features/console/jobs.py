@@ -28,7 +28,7 @@ class Jobs:
         self._waiting = 0
 
     async def do(self, job: str, *arguments: Any, told: AsyncIterator[bytes] | None = None) -> bytes:
-        """Run a job and return its answer; the job reads the lines of `told`. Errors of `told` are passed on."""
+        """Run a job and return its answer; the lines of `told` are sent to the job. Errors of `told` are passed on."""
         if self._waiting >= MAX_WAITING:
             raise DeniedError(503, f"{MAX_WAITING} such requests are running already: try again in a moment")
         self._waiting += 1

@@ -47,7 +47,7 @@ class KeptDays:
         return self._still_open(found)
 
     def entries(self, first: int, last: int, most: int) -> dict[str, Any]:
-        """Return at most so many entries between two positions, as the fields of a `ToldPage`."""
+        """Return at most `most` entries between two positions, as the fields of a `ToldPage`."""
         files, clock = sorted(self._files(), key=lambda row: row[1]), JournalClock()
         begin = max((number for number, row in enumerate(files) if row[1] <= first), default=0)
         found, epoch = list[dict[str, Any]](), None

@@ -54,7 +54,7 @@ def keep_story(root: Path, position: int, robot: str = "", *, visitor: str = "",
 
 
 def _visit(root: Path, position: int, robot: str, bundles: KeptBundles) -> RecordedVisit:
-    """Return the visit with that entry. Raises UsageError."""
+    """Return the visit with that entry. Raises UsageError if there is none, or a visitor in it was forgotten."""
     recorded = visits(with_machines(chosen(root, None, all=True, robot=robot).entries(), bundles))
     for visit in recorded:
         if visit.first <= position <= visit.last:
@@ -65,7 +65,7 @@ def _visit(root: Path, position: int, robot: str, bundles: KeptBundles) -> Recor
 
 
 def _created(root: Path, stem: str, text: str) -> Path:
-    """Write a new file for a story. Raises UsageError."""
+    """Write a new file for a story; return its path in the project. Raises UsageError if it can't be written."""
     folder = root / STORIES
     try:
         folder.mkdir(parents=True, exist_ok=True)

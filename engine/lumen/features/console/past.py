@@ -64,7 +64,7 @@ SAID = ("behavior", "state", "row", "language", "text")
 
 
 class Past:
-    """Answers from the exhibitions, and by jobs from the journal of the console's own project."""
+    """Serves the paths about the past, from the answers of exhibitions, and by jobs from the project's own journals."""
 
     def __init__(self, reception: Reception, jobs: Jobs) -> None:
         self._reception, self._jobs = reception, jobs
@@ -264,7 +264,9 @@ class Past:
 
 
 def _positions(request: Request) -> tuple[int, int]:
-    """Return the positions of the first and the last entry that are requested. Raises DeniedError."""
+    """Return the positions of the first and the last entry that are requested. Raises DeniedError if one is not a whole
+    number.
+    """
     first, last = (request.query_params.get(name, "") for name in ("from", "to"))
     if not (first.isdigit() and last.isdigit() and len(first + last) < 36):
         raise DeniedError(400, "`from` and `to` must be positions of entries: whole numbers")

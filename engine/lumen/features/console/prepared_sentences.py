@@ -56,7 +56,10 @@ class PreparedSentences:
             raise UsageError(f"{self._file} can't be read: {error.strerror}") from None
 
     def keep(self, sentence: PreparedSentence) -> list[PreparedSentence]:
-        """Add a sentence at the end, unless it is kept already; return all. Raises UsageError."""
+        """Add a sentence at the end, unless it is kept already; return all.
+
+        Raises UsageError if the sentence is invalid, `MAX_SENTENCES` are kept, or the file can't be read or written.
+        """
         check_language(sentence.language)
         one, before = PreparedSentence(one_line(sentence.text, "text"), sentence.language), self.all()
         if one in before:
@@ -66,7 +69,9 @@ class PreparedSentences:
         return self._write([*before, one])
 
     def remove(self, sentence: PreparedSentence) -> list[PreparedSentence]:
-        """Remove a sentence, if it is kept; return the others. Raises UsageError."""
+        """Remove a sentence if it is kept, and return the others. Raises UsageError if the file can't be read or
+        written.
+        """
         return self._write([one for one in self.all() if one != sentence])
 
     def _write(self, sentences: list[PreparedSentence]) -> list[PreparedSentence]:

@@ -9,5 +9,5 @@ from lumen.project.sections import read_fields
 
 
 def read_console(data: Mapping[str, Any], report: DocumentReport) -> ConsoleSettings:
-    """Return the address of the pages and their PINs; `lumen run` then has a console beside it."""
+    """Return the settings in `console:`; their presence makes `lumen run` start a console in a process of its own."""
     return read_fields(ConsoleSettings, data["console"], wanted=True)

@@ -22,12 +22,16 @@ AGAIN = 500
 
 @dataclass
 class ReadPosition:
-    """The last position that a page has of a robot's journal in its `run`; it saw `version` of the robot `at` [s]."""
+    """How far a page has received the journal and the state of one robot."""
 
     position: int
+    """The position of the last entry that it has."""
     run: int
+    """The `run` of the ring with that entry, -1 if unknown."""
     version: int = -1
+    """The version of the robot that it has, -1 for none."""
     at: float = 0.0
+    """The time at which that version was sent [s, monotonic]."""
 
 
 class Listener(NamedTuple):

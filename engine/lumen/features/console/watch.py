@@ -28,7 +28,7 @@ class Changes:
         self._next = asyncio.Event()
 
     def tell(self) -> None:
-        """Count a change and wake all that wait. Call it in the loop."""
+        """Count a change and wake all callers of `wait`. Call it in the loop."""
         self.count += 1
         self._next.set()
         self._next = asyncio.Event()
@@ -63,7 +63,7 @@ FULL_PAGE = 100
 class Watch:
     """The robots of a bus, by name; `changes` notifies the loop after any of them has changed.
 
-    `start` and everything else here is for the console's loop. `reach` opens the bus of the project in `root`.
+    Call all methods in the console's event loop. `reach` opens the bus of the project in `root`.
     """
 
     def __init__(self, reach: Callable[[], Reached], root: Path) -> None:
@@ -72,6 +72,7 @@ class Watch:
         self.lookers = 0
         """The number of open streams of pages."""
         self.felt: Callable[[str, str, Mapping[str, Any]], None] = lambda _robot, _sense, _body: None
+        """Called with the robot, the sense and the body of each message of a sense, on a thread of the bus."""
         self._tasks: dict[str, asyncio.Task[None]] = {}
         self._news = set[str]()
         self.link = BusLink(
@@ -92,7 +93,7 @@ class Watch:
         await asyncio.to_thread(self.link.close)
 
     def _later(self, call: Callable[..., object], *arguments: Any) -> None:
-        """Call something in the loop; from a thread of the bus."""
+        """Schedule a call in the console's loop; any thread may do so."""
         with suppress(RuntimeError):  # the loop has ended
             self._loop.call_soon_threadsafe(call, *arguments)
 
