@@ -21,10 +21,10 @@ Span = tuple[float, float]
 
 
 class Addressing:
-    """Opens the ears for some seconds after each face that is near and looks, and each touch; always if unconfigured.
+    """Opens the ears for some seconds after a touch, or a near face that looks at the robot.
 
-    `said` is `listens` of the module's settings; `tell` receives a reason why it has no effect. Messages may arrive on
-    any thread, in the order of time.
+    Without settings, they are always open. `said` is `listens` of the module's settings; `tell` receives a reason why
+    one of these has no effect. Messages may arrive on any thread, in the order of time.
     """
 
     def __init__(self, said: Mapping[str, Any], tell: Callable[[str], None]) -> None:
@@ -39,8 +39,9 @@ class Addressing:
                 if key in self._said}  # fmt: skip
 
     def face(self, body: Any, at: float) -> None:
-        """Note a face in the image. If a module does not report whether faces look, all of its faces count as
-        looking.
+        """Open the ears if a face is near enough and looks at the robot.
+
+        If a module does not report whether faces look, all of its faces count as looking.
         """
         said = self._said.get("face", {})
         match body:
@@ -58,7 +59,7 @@ class Addressing:
             self._open(FACE, at, said.get("after", AFTER_FACE))
 
     def touch(self, body: Any, at: float) -> None:
-        """Note which sensors are pressed."""
+        """Open the ears if one of the configured sensors is pressed."""
         said = self._said.get("touch", {})
         match body:
             case {"name": list(names), "value": list(values)}:

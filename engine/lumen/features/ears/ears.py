@@ -68,10 +68,10 @@ class Ears(Module):
 
     It is half duplex: while the robot speaks, and until its echo has faded, only phrases that interrupt it are heard.
     The same applies if `listens` is set and the robot is not addressed. The expected and the interrupting phrases
-    depend on the states that are active when a sound arrives; a sound counts as just ended then. Changes of listening,
-    with their reasons, are published on the route `listening`. A recogniser and a detector of speech may be passed in;
-    the defaults are PocketSphinx, or the Whisper of the settings, and Silero's network. Raises ModuleError if the
-    recogniser is missing.
+    depend on the states that are active when a sound arrives; a sound is assumed to end at that moment. Changes of
+    listening, with their reasons, are published on the route `listening`. A recogniser and a detector of speech may be
+    passed in; the defaults are PocketSphinx, or the Whisper of the settings, and Silero's network. Raises ModuleError
+    if the recogniser is missing.
     """
 
     name = EARS

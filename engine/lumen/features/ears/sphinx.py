@@ -64,7 +64,7 @@ def arpa(sentences: Sequence[Sequence[str]], common: Mapping[str, float]) -> str
 
 
 def _chances(expected: Mapping[str, int], common: Mapping[str, float]) -> dict[str, float]:
-    """Return the probability of each word by itself."""
+    """Return the probability of each word without regard to the one before it."""
     total, whole = sum(expected.values()), sum(common.values())
     share = COMMON_WEIGHT if common else 0.0
     chances = {word: (1 - share) * count / total for word, count in expected.items()}

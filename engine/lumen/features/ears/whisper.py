@@ -45,7 +45,9 @@ class Whisper(RankingRecogniser):
         """Do nothing: Whisper uses no expected sentences."""
 
     def hypotheses(self, sound: Sound) -> Sequence[Hypothesis]:
-        """Return the text of a sound as a single hypothesis, none if nothing is said. Raises ModuleError."""
+        """Return the text of a sound as a single hypothesis, none if nothing is said. Raises ModuleError if Whisper
+        fails on it.
+        """
         import numpy as np
 
         samples = np.frombuffer(resampled(sound, SAMPLE_RATE).samples, "<i2").astype(np.float32) / 32_768
@@ -76,7 +78,7 @@ def shared_whisper(folder: Path, languages: Sequence[str]) -> SharedRecogniser:
 
 
 def _loaded(folder: Path) -> Any:
-    """Return the model in a folder, in eight bits on the processor. Raises ModuleError."""
+    """Return the model in a folder, in eight bits on the processor. Raises ModuleError if it can't be loaded."""
     if not folder.is_dir():
         raise ModuleError(f"the folder {folder}, which `whisper` names, does not exist: put a CTranslate2 model there")
     missing = [name for name in FILES if not (folder / name).is_file()]

@@ -59,7 +59,7 @@ class PersonDetector:
         self._people.setSVMDetector(cv2.HOGDescriptor_getDefaultPeopleDetector())
 
     def faces(self, grey: "Grey") -> list[Box]:
-        """Return the faces, the largest, and so the nearest, first."""
+        """Return the boxes of faces [px], the largest, and so the nearest, first."""
         small, zoom = self._small(grey)
         framed = self._cv2.copyMakeBorder(small, RIM_WIDTH, RIM_WIDTH, RIM_WIDTH, RIM_WIDTH, self._cv2.BORDER_REPLICATE)
         found = self._faces.detectMultiScale(framed, SCALE_STEP, MIN_NEIGHBOURS, minSize=(MIN_FACE_SIZE, MIN_FACE_SIZE))

@@ -145,7 +145,9 @@ class Eyes(Module):
             self._window.close()
 
     def look(self, frame: Frame, now: float) -> None:
-        """Publish what a frame, taken at `now` [s], shows."""
+        """Publish the nearest face and the largest person in a frame taken at `now` [s]. Raises ModuleError if OpenCV
+        fails.
+        """
         try:
             faces = self._detector.faces(frame.grey)
             if faces:
@@ -261,7 +263,7 @@ def _when(frame: Frame) -> dict[str, float]:
 
 
 def forget_faces(folder: Path, name: str, found: Forgetting) -> None:
-    """Delete the pictures of a person's face in a home."""
+    """Delete the pictures of a person's face in a project's state folder, and add their number to `found`."""
 
     def work() -> None:
         if gone := FaceGallery(file, time.time).forget(name):

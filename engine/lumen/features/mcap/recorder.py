@@ -111,7 +111,9 @@ class Recorder:
         self._news.append(project)
 
     def mark(self, why: str) -> None:
-        """Keep what is being recorded; can be called from any thread."""
+        """Mark this moment on all tapes, for the reason `why`, so that they keep what happened around it. Any thread
+        may call it.
+        """
         for tape in self.tapes:
             tape.mark(why, time.time())
 

@@ -83,7 +83,7 @@ def _is_cut(path: Path) -> bool:
 
 
 def _readable(piece: Path) -> bool:
-    """Return whether it is a recording: one that was cut off in its first bytes is not."""
+    """Return whether a piece is a recording: a file that was cut off in its first bytes is not."""
     try:
         whole(piece)
     except RecordingError:

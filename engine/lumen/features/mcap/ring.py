@@ -31,8 +31,8 @@ class RingTape:
     """Keeps the last `settings.ring` seconds in pieces, and joins them to a recording when a moment is marked.
 
     It continues for `AFTER` s; further marks extend that, up to the ring's length in all. Consecutive recordings do not
-    overlap. `first` begins each piece; `last` returns the end of a recording from the times of its beginning and end [s
-    since 1970] and its pieces. `kept` receives the path of each recording.
+    overlap. `first` returns the items that begin each piece; `last` returns the end of a recording from the times of
+    its beginning and end [s since 1970] and its pieces. `kept` receives the path of each recording.
     """
 
     def __init__(

@@ -157,7 +157,7 @@ class Memory(Module):
                     self._note("state", {"text": ", ".join(entered)}, "text", data)
 
     def _sample(self, sense: str, message: Message) -> None:
-        """Note a sense's reading at most once in the configured time; Lumen's database did so at 1 Hz."""
+        """Note a sense's reading, at most once in the configured time (`sample`) [s]."""
         now, every = self._clock(), float(self.settings.options["sample"])
         if now - self._sampled.get(sense, 0.0) >= every:
             self._sampled[sense] = now

@@ -70,7 +70,7 @@ class Store:
         self._unclean = False
 
     def add(self, entries: Sequence[JournalEntry]) -> None:
-        """Write all of the entries, or (ModuleError) none."""
+        """Write all of the entries. Raises ModuleError if that fails; then none of them is written."""
         rows = [
             (
                 *(
@@ -106,12 +106,16 @@ class Store:
         return _visitor(rows[0]) if rows else None
 
     def visitors(self) -> list[dict[str, Any]]:
-        """Return all visitors, the most recent first."""
+        """Return the visitors, the most recent first, at most `MAX_ROWS`."""
         sql = f"SELECT {_VISITOR} FROM visitors ORDER BY last DESC, name LIMIT ?"
         return [_visitor(row) for row in self._do(lambda db: db.execute(sql, (MAX_ROWS,)).fetchall())]
 
     def journal(self, *, since: float = 0.0, visitor: str = "", limit: int = 100) -> list[dict[str, Any]]:
-        """Return the newest entries in the order of time; with a `visitor`, only those of their visits."""
+        """Return the newest entries since a time [s since 1970], in the order of time: at most `limit`, and at most
+        `MAX_ROWS`.
+
+        With a `visitor`, only entries of their visits are returned.
+        """
         sql = f"""SELECT {_ENTRY} FROM journal WHERE time >= :since AND (:key = '' OR key = :key OR visit IN
             (SELECT visit FROM journal WHERE key = :key AND visit > 0)) ORDER BY time DESC, id DESC LIMIT :limit"""
         given = {"since": float(since), "key": name_key(visitor), "limit": min(limit, MAX_ROWS)}
@@ -119,7 +123,7 @@ class Store:
         return [{**dict(row), "data": json.loads(row["data"])} for row in reversed(found)]
 
     def end(self) -> JournalEnd:
-        """Return the end of the journal."""
+        """Return the last visit in the journal, with its newest entry; an empty one if there is no visit."""
         sql = "SELECT visit, time, visitor FROM journal WHERE visit > 0 ORDER BY id DESC LIMIT 1"
         rows = self._do(lambda db: db.execute(sql).fetchall())
         return JournalEnd(*rows[0]) if rows else JournalEnd()

@@ -31,7 +31,11 @@ class Visit:
         self._muted = False
 
     def live(self, now: float, earlier: Callable[[], JournalEnd], *, spoken: bool) -> None:
-        """Note that something happens at `now` [s since 1970]; `earlier` is called once."""
+        """Note an entry at `now` [s since 1970]; after a silence, it ends the visit of a visitor without a name.
+
+        `spoken` means that the entry is about the visitor. `earlier` returns the end of an earlier run's journal, and
+        is called once.
+        """
         if not self.number:
             end = earlier()
             self.number, self._spoke, self.visitor = max(end.visit, 1), end.time, end.visitor

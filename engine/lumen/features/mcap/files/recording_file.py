@@ -52,7 +52,7 @@ class RecordingFile:
         return int(self._file.tell())
 
     def write(self, items: Iterable[Recorded]) -> None:
-        """Write these items in their order."""
+        """Write these items in their order, without messages of channels beyond the first `MAX_CHANNELS`."""
         for item in items:
             match item:
                 case RecordedMessage(channel, came, sent, data):
