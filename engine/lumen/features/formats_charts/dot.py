@@ -30,7 +30,7 @@ class _DotDrawing:
         self.ids = {path: f"{prefix}s{number}" for number, path in enumerate(machine.states)}
 
     def lines(self, name: str = "") -> Iterator[str]:
-        """Yield the whole graph; `name` is that of an invocation."""
+        """Yield the lines of a whole machine; `name` is the label of an invoked one, empty for the outermost."""
         yield from self._cluster(self.machine.root, 1, name)
         for state in self.machine.states.values():
             for transition in state.transitions:

@@ -7,5 +7,5 @@ def normal(descriptor: str) -> str:
 
 
 def overlap(one: str, other: str) -> bool:
-    """Return whether an event can match both."""
+    """Return whether an event can match both descriptors."""
     return "*" in (one, other) or f"{one}.".startswith(f"{other}.") or f"{other}.".startswith(f"{one}.")

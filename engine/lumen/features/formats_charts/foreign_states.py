@@ -19,15 +19,20 @@ _UNFIT_ID = re.compile(r"[\s#*]+")
 
 @dataclass(slots=True, eq=False)
 class ForeignState:
-    """A state: its part of the foreign file, its key and path in Lumen's, and its id, if it has one."""
+    """A state of a foreign chart."""
 
     source: Any
+    """Its part of the foreign file."""
     parent: "ForeignState | None"
     key: str
+    """Its key in Lumen's file."""
     id: str
+    """Its id, empty if it has none."""
     path: str
+    """Its path in Lumen's file."""
     children: list["ForeignState"] = field(default_factory=list)
     keys: set[str] = field(default_factory=set)
+    """The keys of its children."""
 
     def add(self, child: "ForeignState") -> None:
         """Add a child."""
@@ -40,20 +45,20 @@ class ForeignState:
         return self.id or self.path
 
     def lies_below(self, other: "ForeignState") -> bool:
-        """Return whether it is inside the other one, at any depth."""
+        """Return whether this state is inside the other one, at any depth."""
         node = self.parent
         while node is not None and node is not other:
             node = node.parent
         return node is other
 
     def walk(self) -> Iterator["ForeignState"]:
-        """Yield itself and everything below, in document order."""
+        """Yield this state and all below it, in document order."""
         yield self
         for child in self.children:
             yield from child.walk()
 
     def below(self, key: str) -> str:
-        """Return the path of a child."""
+        """Return the path of the child with that key."""
         return f"{self.path}.{key}" if self.path else key
 
     def calls(self, target: "ForeignState", title: str, *, inside: bool = False) -> str:

@@ -71,7 +71,7 @@ class FclStatement(NamedTuple):
 
 
 class FclSection(NamedTuple):
-    """A section `KIND name` with its statements and the offset of its beginning."""
+    """A section `KIND name` with its statements, from `offset` to `end` in the text."""
 
     kind: str
     name: str

@@ -185,7 +185,7 @@ class _FisReader:
         return self.draft.result()
 
     def known(self, section: FisSection) -> None:
-        """List the unused keys of a section, and repeated ones."""
+        """Report the unused keys of a section, and repeated ones."""
         if section.kind == "rules":
             return
         table, seen = KNOWN[f"[{section.kind.capitalize()}]"], set[str]()
@@ -198,7 +198,7 @@ class _FisReader:
             seen.add(line.key)
 
     def numbered(self, sections: list[FisSection]) -> list[FisSection]:
-        """Return the sections ordered by their numbers, which rules use; list gaps in the numbers."""
+        """Return the sections ordered by their numbers, which rules use; report gaps in the numbers."""
         found = sorted(sections, key=lambda section: section.number)
         for number, section in enumerate(found, 1):
             if section.number != number:

@@ -23,7 +23,9 @@ _UNDEFINED = Identifier("undefined")
 
 
 def equality(translation: Translation, node: Binary) -> ExpressionNode:
-    """Return `==`, `!=`, `===` or `!==` in Lumen's language."""
+    """Return a comparison by `==`, `!=`, `===` or `!==` in Lumen's language. Raises ScriptError if it has no
+    counterpart.
+    """
     positive, strict = node.sign in ("==", "==="), len(node.sign) == 3
     found = _undefined(translation, node, strict) or _index(translation, node) or _equal(translation, node, strict)
     return found if positive else negated(found)

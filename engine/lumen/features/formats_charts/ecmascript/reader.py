@@ -33,18 +33,18 @@ _FALSY = ListLiteral((Literal(None), Literal(False), Literal(0), Literal("")))
 
 @dataclass(frozen=True)
 class ScriptNames:
-    """The meaning of the names in a document.
-
-    `context` maps the data model's names to context keys, `kinds` those keys to their constant kinds (absent: any);
-    `states` maps the ids for `In()` to Lumen's, `events` the names of events that differ in Lumen; `title` is the
-    value of `_name`.
-    """
+    """The meaning of the names in a document."""
 
     context: Mapping[str, str] = field(default_factory=dict)
+    """The context keys, by the data model's names."""
     kinds: Mapping[str, str] = field(default_factory=dict)
+    """The constant kinds of context keys; a missing key may have any kind."""
     states: Mapping[str, str] = field(default_factory=dict)
+    """Lumen's states, by the ids for `In()`."""
     events: Mapping[str, str] = field(default_factory=dict)
+    """Lumen's names of events, by the document's names, if they differ."""
     title: str = ""
+    """The value of `_name`."""
 
 
 def read_condition(source: str, names: ScriptNames) -> str:
@@ -83,7 +83,7 @@ class ScriptTranslator:
         return kind(node, self.names.kinds)
 
     def condition(self, tree: ExpressionNode) -> ExpressionNode:
-        """Return a tree that is true if the value is truthy."""
+        """Return one of Lumen's trees that is true if the value of an ECMAScript tree is truthy. Raises ScriptError."""
         match tree:
             case Logic(sign=sign, operands=operands):
                 return self._logic(sign, operands)
@@ -118,7 +118,9 @@ class ScriptTranslator:
         return guarded(self, Unary("!", Binary("in", node, _FALSY)), node)
 
     def value(self, tree: ExpressionNode) -> ExpressionNode:
-        """Return a tree with the same value."""
+        """Return one of Lumen's trees with the value of an ECMAScript tree. Raises ScriptError if it has no
+        counterpart.
+        """
         match tree:
             case Literal(value=int() as value) if not isinstance(value, bool) and not MIN_INT <= value <= MAX_INT:
                 return Literal(float(value))
@@ -251,7 +253,7 @@ class ScriptTranslator:
 
 
 def _floats(left: ExpressionNode, right: ExpressionNode) -> tuple[ExpressionNode, ExpressionNode]:
-    """Return the operands of `/` for a quotient with its fraction."""
+    """Return the operands of `/`, one of them as a float, so that Lumen's division keeps the fraction."""
     match left, right:
         case _, Literal(value=int() as value):
             return left, Literal(float(value))

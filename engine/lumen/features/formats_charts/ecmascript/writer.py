@@ -39,13 +39,14 @@ class WrittenScript(NamedTuple):
 
 
 class Vocabulary(NamedTuple):
-    """Lumen's names in the document: the constant `kinds` of context keys, their names, and the ids of states by
-    path.
-    """
+    """The meaning of Lumen's names in a document."""
 
     kinds: Mapping[str, str] = {}
+    """The constant kinds of context keys."""
     keys: Mapping[str, str] = {}
+    """The names of context keys in the document, if they differ."""
     states: Mapping[str, str] = {}
+    """The ids of states in the document, by Lumen's names."""
 
 
 def write_expression(source: str, vocabulary: Vocabulary) -> WrittenScript:

@@ -22,7 +22,9 @@ _STATEMENT = re.compile(
 
 
 def assignments(source: str) -> list[tuple[str, str]] | None:
-    """Return the names and values of `x = 1; y += x; z++`, in order; None if the script does anything else."""
+    """Return the names and values of `x = 1; y += x; z++`, in order; None if the script contains quotes or does
+    anything else.
+    """
     text = re.sub(r"//[^\n]*|/\*.*?\*/", "", source, flags=re.DOTALL)
     if "'" in text or '"' in text:
         return None
@@ -73,7 +75,7 @@ class ScxmlActionReader:
             self.findings.lost(element.place, f"`<{element.tag}>`: {error}")
 
     def condition(self, source: str) -> str:
-        """Return Lumen's guard. Raises ScriptError."""
+        """Return Lumen's guard for a condition in ECMAScript. Raises ScriptError if it has no counterpart."""
         return read_condition(source, self.context.names)
 
     def _actions(self, element: XmlElement) -> Iterator[ActionData]:
@@ -131,7 +133,10 @@ class ScxmlActionReader:
         yield from ({"assign": {keys[name]: self.value(source)}} for name, source in found)
 
     def value(self, source: str) -> Any:
-        """Return a value in Lumen's form: literals as such, the rest as an expression."""
+        """Return the value of an ECMAScript expression: a literal as itself, anything else as Lumen's expression.
+
+        Raises ScriptError if it has no counterpart.
+        """
         read = constant(parse_script(source), _NOT_CONSTANT)
         if read is not _NOT_CONSTANT:
             return quoted(read)

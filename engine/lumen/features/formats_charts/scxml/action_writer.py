@@ -36,7 +36,7 @@ class ScxmlActionWriter:
         self.vocabulary, self.report = vocabulary, report
 
     def block(self, steps: Sequence[PlacedAction]) -> list[XmlTag]:
-        """Return the elements of these actions."""
+        """Return the elements of these actions; those that ECMAScript can't express are reported and left out."""
         return [tag for step in steps for tag in self._one(step)]
 
     def expression(self, expression: Expression) -> str:
@@ -103,7 +103,10 @@ class ScxmlActionWriter:
                 yield from self.block(choice.otherwise)
 
     def data(self, value: ComputedValue) -> list[XmlTag]:
-        """Return parameters for a map, content for everything else. Raises ScriptError."""
+        """Return the elements of an event's data: a `<param>` for each entry of a map, else one `<content>`.
+
+        Raises ScriptError if it can't be expressed.
+        """
         if isinstance(value, Mapping) and value and all(value):
             return [XmlTag("param", {"name": key, "expr": self.value(item)}) for key, item in value.items()]
         return [XmlTag("content", {"expr": self.value(value)})]

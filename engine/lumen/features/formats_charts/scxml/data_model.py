@@ -125,8 +125,8 @@ class ScxmlDataModel:
 
 
 def written(text: str) -> Any:
-    """Return the value of inline content (SCXML B.2.8.1): JSON, a list or text in ECMAScript's form, or else the
-    text.
+    """Return the value of inline content (SCXML B.2.8.1): JSON, a list or text in ECMAScript's form, or else the text;
+    None if it is blank.
     """
     stripped = text.strip()
     if not stripped:

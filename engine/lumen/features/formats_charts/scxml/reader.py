@@ -238,7 +238,7 @@ class _ScxmlReader:
         return data
 
     def _invokes(self, node: ForeignState) -> list[dict[str, Any]]:
-        """Return the charts in other files that it invokes; report its other invocations."""
+        """Return the charts in other files that a state invokes; report its other invocations."""
         rows = []
         for element in node.source.of("invoke"):
             try:
@@ -285,8 +285,8 @@ class _ScxmlReader:
                 self.findings.changed(block.place, f"several `<{block.tag}>` become one list", hint)
 
     def _afters(self, node: ForeignState) -> dict[str, Any]:
-        """Return the blocks of `<send>` and `<cancel>` as which Lumen wrote an `after`, and the delays by their
-        events.
+        """Return the blocks by which Lumen wrote an `after`, as `onentry` and `onexit`, and as `events` the delays by
+        event.
         """
         found: dict[str, Any] = {"onentry": [], "onexit": [], "events": {}}
         name = node.name or self.outline.title

@@ -152,7 +152,7 @@ class ScxmlTransitionReader:
         return found
 
     def named(self, source: ForeignState, targets: list[ForeignState], *, inside: bool = False) -> Any:
-        """Return one target's name from this state, or the list of several."""
+        """Return the name by which a state refers to its target; a list for several targets."""
         names = [source.calls(target, self.outline.title, inside=inside) for target in targets]
         return names[0] if len(names) == 1 else names
 

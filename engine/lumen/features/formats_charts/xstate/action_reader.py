@@ -51,7 +51,8 @@ class XStateActionReader:
         self.findings.changed(self.source.place(where), message, hint)
 
     def actions(self, data: Any, where: NodePath) -> list[ActionData]:
-        """Return actions from a name, an object, or a list of these."""
+        """Return actions from a name, an object, or a list of these; one without code is reported and becomes a `log`.
+        """
         if data is None:
             return []
         rows = [((*where, i), row) for i, row in enumerate(data)] if isinstance(data, list) else [(where, data)]
@@ -147,7 +148,9 @@ class XStateActionReader:
         return {"assign": sound}
 
     def _sent(self, data: Mapping[str, Any]) -> dict[str, Any]:
-        """Return the event of `raise`, `send` and `sendTo` with its data, its delay and its id."""
+        """Return the event of `raise`, `send` and `sendTo` with its data, its delay and its id. Raises _AbsentError
+        without an event.
+        """
         event, delay, id = data.get("event"), data.get("delay"), data.get("id")
         fields = event if isinstance(event, dict) else {"type": event}
         name = fields.get("type")
@@ -249,7 +252,7 @@ class _AbsentError(Exception):
 
 
 def _text(data: Mapping[str, Any], key: str) -> str:
-    """Return a text. Raises _AbsentError if it is missing."""
+    """Return the text or the number of a key, as text. Raises _AbsentError if it is missing."""
     value = data.get(key)
     if isinstance(value, bool) or not isinstance(value, str | int | float) or value == "":
         raise _AbsentError(f"`{key}` is not in the file")

@@ -10,7 +10,7 @@ from lumen.language.actions import ComputedValue, Expression
 
 
 def constant(value: ComputedValue) -> Any:
-    """Return a value with its literal texts as such; expressions stay unchanged."""
+    """Return a computed value as data: the value of a literal, the source text of any other expression."""
     match value:
         case Expression(source):
             return _text(source)
@@ -22,7 +22,7 @@ def constant(value: ComputedValue) -> Any:
 
 
 def constant_data(data: Any) -> Any:
-    """Return the same for a value of a behaviour file, in which each text is an expression."""
+    """Return a value of a behaviour file, whose texts are expressions, in the form of `constant`."""
     match data:
         case str():
             return _text(data)

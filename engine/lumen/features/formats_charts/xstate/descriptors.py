@@ -19,7 +19,7 @@ _DESCRIPTOR = re.compile(r"\*|[^\s.*]+(\.[^\s.*]+)*(\.\*)?")
 
 
 def is_descriptor(text: str) -> bool:
-    """Return whether it can be a key of `on`."""
+    """Return whether a text can be a key of `on`."""
     return bool(_DESCRIPTOR.fullmatch(text))
 
 
@@ -77,7 +77,7 @@ class EventDescriptors:
 
 
 def bare(descriptor: str) -> str:
-    """Return `a` for `a.*`."""
+    """Return `a` for `a.*`, and any other descriptor unchanged."""
     return descriptor.removesuffix(".*")
 
 

@@ -15,12 +15,12 @@ _ENDS = {"onDone": "done.invoke", "onError": "error.invoke"}
 
 
 class ActorEnds(NamedTuple):
-    """`data` has `do`, `invoke` and the transitions at their ends; `waits` has those for `on`, at the end of actors
-    that can't be converted.
-    """
+    """The converted invocations of a state."""
 
     data: dict[str, Any]
+    """`do`, `invoke`, and the transitions at their ends."""
     waits: dict[str, list[TransitionData]]
+    """The transitions at the ends of actors that can't be converted, by their descriptors in `on`."""
 
 
 class XStateInvokeReader:
@@ -84,7 +84,7 @@ class XStateInvokeReader:
         return self.parts.do(given.get("steps")) if row.get("src") == DO_ACTOR and isinstance(given, dict) else None
 
     def _invoked(self, own: Mapping[str, Any], where: NodePath, row: Mapping[str, Any]) -> dict[str, Any] | None:
-        """Return the behaviour that Lumen wrote as an actor; None if it is another actor."""
+        """Return the behaviour that Lumen wrote as an actor; None for any other actor."""
         inputs, id, behavior = own.get("invoke"), row.get("id"), row.get("src")
         if not isinstance(inputs, dict) or id not in inputs or not isinstance(behavior, str):
             return None

@@ -10,15 +10,18 @@ from lumen.project.formats.conversion_findings import ConversionFindings
 
 
 class XStateNode(ForeignState):
-    """A state; `source` is its JSON, `original` its key there, `where` its path in the file, `named` its children,
-    `regular` those that can be active."""
+    """A state of an XState machine; `source` is its JSON."""
 
     __slots__ = ("named", "original", "regular", "where")
 
     original: str
+    """Its key in the file."""
     where: NodePath
+    """Its path in the file."""
     named: "dict[str, XStateNode]"
+    """Its children, by their keys in the file."""
     regular: "list[XStateNode]"
+    """The children that can be active."""
 
     @property
     def kind(self) -> str:
@@ -30,7 +33,7 @@ class XStateNode(ForeignState):
 
     @property
     def foreign_id(self) -> str:
-        """Return XState's id of the state: its own, or the machine's and the keys down to it."""
+        """XState's id of the state: its own, or the machine's id and the keys down to it."""
         if isinstance(self.source.get("id"), str) and self.source["id"]:
             return str(self.source["id"])
         below = self.parent.foreign_id if isinstance(self.parent, XStateNode) else ""

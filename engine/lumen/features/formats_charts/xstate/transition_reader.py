@@ -78,9 +78,9 @@ class XStateTransitionReader:
         return row
 
     def _reenters(self, data: dict[str, Any]) -> bool:
-        """Return whether the state itself is left and entered again.
+        """Return whether a transition leaves its own state and enters it again.
 
-        In version 4 it is, unless `internal` or a target that begins with a dot prevents it.
+        In version 4 it does, unless `internal` or a target that begins with a dot prevents it.
         """
         if isinstance(data.get("reenter"), bool):
             return bool(data["reenter"])
@@ -117,7 +117,7 @@ class XStateTransitionReader:
         return found
 
     def named(self, state: XStateNode, targets: list[XStateNode]) -> Any:
-        """Return one target, or the list."""
+        """Return the name by which a state refers to its target; a list for several targets."""
         names = [state.calls(target, self.outline.title) for target in targets]
         return names[0] if len(names) == 1 else names
 

@@ -210,7 +210,7 @@ def _refused(name: str, shape: Mapping[str, Any], count: int) -> str:
 
 
 def ranged(low: float, high: float) -> list[int | float]:
-    """Return a range as written in YAML."""
+    """Return a range as a list for YAML, with whole numbers as integers."""
     return [low if low == -inf else plain(low), high if high == inf else plain(high)]
 
 

@@ -98,7 +98,7 @@ class _FormulaParser(PrattParser):
         return FunctionCall(function, arguments)
 
     def joined(self, left: ExpressionNode, sign: Token, power: int) -> ExpressionNode:
-        """Return `left and right`."""
+        """Return `left and right` or `left or right`."""
         return Logic("&&" if sign.text == "and" else "||", (left, self.expression(power)))
 
     def raised(self, left: ExpressionNode, sign: Token, power: int) -> ExpressionNode:
