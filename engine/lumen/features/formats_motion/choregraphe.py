@@ -149,7 +149,7 @@ def choregraphe_list(content: bytes) -> str:
 
 
 def _tell_around(root: XmlElement, chosen: XmlElement, findings: ConversionFindings) -> None:
-    """List unknown parts of the timeline and of the boxes around it, and the code that runs with it."""
+    """Report unknown parts of the timeline and of the boxes around it, and the code that runs with it."""
     way = _way(root, chosen)
     seen = {id(element) for element in way}
     waiting = [chosen]
@@ -169,7 +169,7 @@ def _tell_around(root: XmlElement, chosen: XmlElement, findings: ConversionFindi
 
 
 def _way(root: XmlElement, wanted: XmlElement) -> list[XmlElement]:
-    """Return the elements from the root to that one."""
+    """Return the elements from the root to `wanted`."""
     above: dict[int, XmlElement] = {}
     for element in root.walk():
         above.update((id(child), element) for child in element.children)
@@ -180,7 +180,9 @@ def _way(root: XmlElement, wanted: XmlElement) -> list[XmlElement]:
 
 
 def _flags(timeline: XmlElement, findings: ConversionFindings) -> Flags:
-    """Return the Start flag (default 1) and the End flag (default -1)."""
+    """Return the frames of a timeline that are played, by default all from frame 1 on, and its pace; report invalid
+    flags.
+    """
     found = {}
     for flag, none in (("start_frame", 1.0), ("end_frame", -1.0)):
         said = timeline.get(flag, f"{none:g}")
@@ -203,7 +205,7 @@ def _flags(timeline: XmlElement, findings: ConversionFindings) -> Flags:
 def _played(
     keys: list[XmlElement], curve: XmlElement, flags: Flags, findings: ConversionFindings
 ) -> Iterator[XmlElement]:
-    """Yield the keys between the flags; the others are listed once per curve."""
+    """Yield the keys between the flags; the others are reported once per curve."""
     outside = []
     for key in keys:
         frame = number(key.get("frame"))
@@ -264,7 +266,7 @@ def _all_timelines(element: XmlElement, box: str) -> Iterator[tuple[str, XmlElem
 
 
 def _others(root: XmlElement, chosen: XmlElement, findings: ConversionFindings, *, asked: bool) -> None:
-    """List the boxes that do something else; if a timeline was requested, the other boxes are not a loss."""
+    """Report the boxes that do something else; if a timeline was requested, the other boxes are not a loss."""
     inside = {id(element) for element in chosen.walk()}
     for box in root.walk():
         around = any(element is chosen or local(element) == "Box" for element in list(box.walk())[1:])
@@ -329,7 +331,7 @@ def _handle(tangent: XmlElement | None, fps: float, factor: float, findings: Con
 
 
 def _under(element: XmlElement, tag: str) -> Iterator[XmlElement]:
-    """Yield the elements of that tag that belong to it, not to a box inside."""
+    """Yield the elements of a tag inside an element, except those of the boxes in it."""
     waiting = list(reversed(element.children))
     while waiting:
         here = waiting.pop()

@@ -155,7 +155,7 @@ class ScriptReading:
             self.changes.append((changed, statement, branch if followed else Branch.LOOP))
 
     def _called(self, call: ast.Call, statement: ast.stmt, branch: Branch, *, told: bool) -> None:
-        """Follow a call, or list it; `told` if one of its values is already listed as not written out."""
+        """Follow a call, or report that it is left out; `told` means that it is an argument of a followed call."""
         name, shown = attribute(call), written(call).partition("\n")[0][:60]
         if name in ALMOTION_CALLS and self.own.called(call) is None:
             self.used.update(name for argument in call.args for name in _names(argument))
@@ -244,7 +244,7 @@ class ScriptReading:
                     self.findings.lost(self._place(statement), message, "write the numbers as literals")
 
     def _followed(self, statement: ast.stmt) -> bool:
-        """Follow an assignment or an `append` of literals; return whether the statement is nothing more."""
+        """Follow an assignment or an `append` of literals; return True if the statement is one of these."""
         match statement:
             case ast.Assign(targets=targets, value=value) if all(isinstance(t, ast.Name) for t in targets):
                 for target in targets:

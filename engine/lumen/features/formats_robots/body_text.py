@@ -20,7 +20,10 @@ CIRCLE = pi
 
 
 def body_text(model: RobotModel, roles: GuessedRoles, joints: Sequence[ModelJoint], title: str, mjcf: str) -> str:
-    """Return the text of the file; `joints` are the model's joints to include."""
+    """Return the text of a body file with these `joints` of the model.
+
+    `title` is its name if the model has none, `mjcf` the model's file, relative to the body file.
+    """
     return SCHEMA_COMMENT.format(kind="body") + "".join(
         f"{line}\n" for line in _lines(model, roles, joints, title, mjcf)
     )

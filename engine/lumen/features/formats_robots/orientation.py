@@ -40,7 +40,7 @@ def product(a: Quaternion, b: Quaternion) -> Quaternion:
 
 
 def rotated(q: Quaternion, v: Vector) -> Vector:
-    """Return the rotated vector."""
+    """Return the vector `v`, rotated by the unit quaternion `q`."""
     w, x, y, z = q
     _, a, b, c = product(product(q, (0.0, *v)), (w, -x, -y, -z))
     return a, b, c
@@ -119,6 +119,6 @@ class Numbers:
         return found[0] if found else None
 
     def vector(self, element: XmlElement, name: str, otherwise: Vector) -> Vector:
-        """Return three numbers, or `otherwise`."""
+        """Return three numbers; `otherwise` if the attribute is missing or invalid."""
         found = self.all(element, name, 3)
         return (found[0], found[1], found[2]) if found else otherwise

@@ -51,8 +51,7 @@ class XStateActionReader:
         self.findings.changed(self.source.place(where), message, hint)
 
     def actions(self, data: Any, where: NodePath) -> list[ActionData]:
-        """Return actions from a name, an object, or a list of these; one without code is reported and becomes a `log`.
-        """
+        """Return actions from a name, an object, or a list of these; report those without code, which become `log`."""
         if data is None:
             return []
         rows = [((*where, i), row) for i, row in enumerate(data)] if isinstance(data, list) else [(where, data)]

@@ -70,8 +70,7 @@ class _FllReader(FllLineReader):
                 self.draft.data["description"] = line.value or self.draft.data["description"]
 
     def known(self, part: FllPart) -> None:
-        """Report the keys of a part that nothing reads, repeated ones, and flags that are neither `true` nor `false`.
-        """
+        """Report keys of a part that nothing reads, repeated ones, and flags that are neither `true` nor `false`."""
         kind = {"Engine": "an engine", "RuleBlock": "a rule block"}.get(part.head.key, "a variable")
         seen = set[str]()
         for line in part.lines:
