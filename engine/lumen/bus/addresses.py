@@ -42,7 +42,7 @@ def within_process(url: str) -> bool:
 
 
 def examples() -> str:
-    """Return addresses of each kind, for `--help`."""
+    """Return a text with an example of each kind of address, for `--help`."""
     return _either([row.example for row in table("buses").values() if row.example])
 
 

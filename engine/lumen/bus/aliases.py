@@ -69,7 +69,10 @@ class Aliases:
         return time.monotonic() - max(self._others.values()) > AWAY_AFTER
 
     def taking(self, handler: MessageHandler) -> MessageHandler:
-        """Return a handler for an alias that ignores messages which also arrive under the key."""
+        """Return a handler for an alias.
+
+        It ignores copies, which also arrive under the key, and all messages while aliases are not used.
+        """
 
         def take(message: Message) -> None:
             if self.used and not message.id.endswith(COPY):

@@ -197,7 +197,7 @@ def _foreign(data: bytes, content_encoding: str) -> str:
 
 
 def text_of_json(body: Any) -> str:
-    """Return why a body is wrong that is a string with JSON in it; empty for any other body."""
+    """Return the reason if a body is a string that contains a JSON object or list; empty for any other body."""
     if not isinstance(body, str) or body.lstrip()[:1] not in ("{", "["):
         return ""
     try:

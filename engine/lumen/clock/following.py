@@ -35,15 +35,15 @@ class FollowingClock:
 
     @property
     def realtime(self) -> float:
-        """The share of its speed that it keeps."""
+        """The present pace of the clock, as a share of `speed`."""
         return self._rate / self.speed
 
     def now(self) -> float:
-        """Return its time [s]."""
+        """Return the clock's time [s]."""
         return self._shown_at(self._monotonic())
 
     def hurry(self) -> None:
-        """End the current `wait` for something urgent; on any thread."""
+        """End the current `wait`, for something urgent; any thread may call it."""
         self._bell.ring()
 
     def doze(self, until: float) -> float:
@@ -70,7 +70,7 @@ class FollowingClock:
         self._run_at(self._pace() + behind / CATCH_UP)
 
     def tick(self) -> None:
-        """Return to the own speed if the robot has been silent for long."""
+        """Return to `speed` if the robot's clock has not been reported for `SILENCE`."""
         if self._heard and self._monotonic() - self._heard[-1][0] > SILENCE:
             self._heard.clear()
             self._run_at(self.speed)

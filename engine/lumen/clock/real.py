@@ -19,11 +19,11 @@ class RealClock:
         self._bell = Bell()
 
     def now(self) -> float:
-        """Return its time [s]."""
+        """Return the clock's time [s]."""
         return (time.monotonic() - self._start) * self.speed
 
     def hurry(self) -> None:
-        """End the current `wait` for something urgent; on any thread."""
+        """End the current `wait`, for something urgent; any thread may call it."""
         self._bell.ring()
 
     def doze(self, until: float) -> float:

@@ -66,11 +66,11 @@ class SimulatedClock:
         return self._meter.factor if self.speed else 1.0
 
     def now(self) -> float:
-        """Return its time [s]."""
+        """Return the clock's time [s]."""
         return self._now
 
     def hurry(self) -> None:
-        """End the current `wait` for something urgent; on any thread."""
+        """End the current `wait`, for something urgent; any thread may call it."""
         self._bell.ring()
 
     def doze(self, until: float) -> float:

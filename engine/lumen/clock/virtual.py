@@ -29,7 +29,7 @@ class VirtualClock:
         self._sleepers: list[Sleeper] = []
 
     def now(self) -> float:
-        """Return its time [s]."""
+        """Return the clock's time [s]."""
         return self._now
 
     def advance(self, dt: float) -> None:

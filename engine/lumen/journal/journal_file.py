@@ -191,12 +191,15 @@ def _bytes(file: Path) -> bytes:
 
 
 def entry_of(line: bytes, position: int) -> RecordedEntry:
-    """Return the entry in such a line. Raises JournalError if it has no entry."""
+    """Return the entry in a line of a frame, with its position. Raises JournalError if it has no entry."""
     return read_entry(_decoded(line), position)
 
 
 def _decoded(line: bytes) -> Any:
-    """Decode a line. orjson is fast, but reads neither NaN nor lone surrogates, which `json` does."""
+    """Return the data in a line, `{}` if it is not JSON.
+
+    orjson is fast, but reads neither NaN nor lone surrogates, which `json` does.
+    """
     try:
         return orjson.loads(line)
     except ValueError:

@@ -70,7 +70,7 @@ class JournalFolder:
 
 
 def newest(home: Path) -> Path | None:
-    """Return the journal file of a home that a run writes, or wrote last."""
+    """Return the journal file in a state folder that a run writes, or wrote last; None if there is none."""
     return max((home / JOURNAL_FOLDER).glob(f"*{JOURNAL_SUFFIX}"), default=None)
 
 

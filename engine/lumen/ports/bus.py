@@ -19,7 +19,9 @@ class Message(NamedTuple):
     body: Any
     """JSON data."""
     reply_to: str = ""
+    """The key for answers; empty if none is wanted."""
     correlation_id: str = ""
+    """A text that identifies the request in its answers."""
     id: str = ""
     """The id, which no other message has."""
     sender: str = ""

@@ -236,7 +236,7 @@ class LocalBusServer:
             self._wake_up()
 
     def _wake_up(self) -> None:
-        """Wake the thread; it is awake already if the socket to it is full."""
+        """Wake the thread; if the socket to it is full, it is awake already."""
         with suppress(OSError):
             self._wake.send(b"!")
 
