@@ -1,4 +1,4 @@
-"""Where a robot believes to be by adding up its steps, and its way to a place, one walk at a time."""
+"""A robot's estimate of its place, by adding up its steps, and its way to another place, one walk at a time."""
 
 from collections.abc import Mapping
 from math import atan2, ceil, cos, hypot, pi, sin, sqrt

@@ -1,7 +1,8 @@
-"""Which passage a question is for, or none: a conditional logit (McFadden 1974), and how probable that choice is.
+"""The choice of the passage for a question, or of none, by a conditional logit (McFadden 1974), with its probability.
 
-Each passage is an alternative whose worth is the weighted sum of its features, and “none of them” is one more, of a
-worth of its own. A question that several passages fit equally well, or none better than “none”, is probably for none.
+Each passage is an alternative whose utility is the weighted sum of its features; “none of them” is one more, with a
+utility of its own. A question that several passages fit equally well, or none better than “none”, probably has no
+passage.
 """
 
 from collections.abc import Sequence

@@ -1,4 +1,4 @@
-"""How probable it is that a passage answers a question, and whether that is enough; imported without numpy."""
+"""The values of a ranking: probabilities, weights, and the results of an exhibition's own questions; needs no numpy."""
 
 from typing import NamedTuple
 

@@ -16,7 +16,7 @@ from lumen.retrieval.scorers import words
 
 
 class FoundAnswer(NamedTuple):
-    """A passage for a question, and the probability that it answers it."""
+    """A passage, and the probability that it answers a question."""
 
     passage: Passage
     language: str
@@ -60,7 +60,9 @@ class Retriever:
         return self._extract(question) if self._extract else np.zeros((0, 1), np.float32)
 
     def rank(self, question: str, weights: Weights) -> Ranked:
-        """Return the passage that most probably answers the question, even if that is improbable."""
+        """Return the passage that most probably answers the question, even if that is improbable; `""` without
+        passages.
+        """
         of_each = self._probabilities(self.features(question), weights)
         row = int(of_each.argmax()) if self.names else -1
         return Ranked(self.names[row], float(of_each[row])) if row >= 0 else Ranked("", 0.0)

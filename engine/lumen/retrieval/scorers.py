@@ -1,4 +1,4 @@
-"""How alike a question is to each wording that is known: stems, runs of letters, and the methods that compare them."""
+"""The similarity of a question to each known wording: stems, letter n-grams, and the methods that compare them."""
 
 from collections import Counter
 from collections.abc import Callable, Sequence
@@ -62,7 +62,7 @@ class Scorer(Protocol):
     """Compares a question with known wordings."""
 
     def __call__(self, question: str) -> Scores:
-        """Return its similarity to each known wording, in the order of the wordings."""
+        """Return the similarity of a question to each known wording, in the order of the wordings."""
 
 
 WordingMethod = Callable[[Sequence[str], str], Scorer]
@@ -126,7 +126,7 @@ def bm25(known: Sequence[str], language: str) -> Scorer:
 
 
 def combined(known: Sequence[str], language: str) -> Scorer:
-    """Return a scorer by the mean of both: letters tolerate misheard words, stems match the meaning."""
+    """Return a scorer by the mean of `ngrams` and `bm25`: letters tolerate misheard words, stems match the meaning."""
     one, other = ngrams(known, language), bm25(known, language)
 
     def score(question: str) -> Scores:

@@ -1,4 +1,4 @@
-"""An exhibition's own questions: the weights of features that they lead to, and what becomes of them."""
+"""Fits weights to an exhibition's own questions, and measures which of them find their passage."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from math import floor

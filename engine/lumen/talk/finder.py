@@ -1,4 +1,4 @@
-"""Find phrases in a sentence: every form of every name at once, in one trie."""
+"""Finds phrases in a sentence: every form of every name at once, with one trie."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
@@ -119,7 +119,11 @@ class ReadSentence:
         return None
 
     def is_asked(self, find: Find) -> bool:
-        """Return whether a find is part of a who, why or when question."""
+        """Return whether a find is in a question: its clause begins with a question word, or has one of
+        `questions_anywhere`.
+
+        A form with a question word of its own is not part of a question.
+        """
         if find.entry.question:
             return False
         clause = self.clauses[find.start]

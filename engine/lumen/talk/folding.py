@@ -140,12 +140,16 @@ def _is_title(word: str, text: str, end: int) -> bool:
 
 
 class SplitText(NamedTuple):
-    """A text as words: as they are compared, where each is in the text, and the clause that it is in, from 0."""
+    """A text as words."""
 
     text: str
+    """The text, as far as it is examined."""
     folded: list[str]
+    """The words as they are compared."""
     spans: list[tuple[int, int]]
+    """The start and the end of each word in the text [characters]."""
     clauses: list[int]
+    """The number of the clause of each word, from 0."""
 
 
 def read_words(text: str) -> SplitText:

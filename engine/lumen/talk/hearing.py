@@ -189,7 +189,9 @@ class Hearing:
 
 
 def dropped(reading: ReadSentence, find: Find, way: str, asks: bool) -> Dropped:
-    """Return why a find does not count for a row of that `way`; `asks`: whether a row takes questions for its name."""
+    """Return why a find does not count for a row of that `way`; `asks` is true if a row of the state accepts questions
+    for its name.
+    """
     if reading.negation(find) is not None:
         return "" if way == "not" else "negated"
     if way == "not":
@@ -202,7 +204,7 @@ def dropped(reading: ReadSentence, find: Find, way: str, asks: bool) -> Dropped:
 
 
 def asked_in(block: Sequence[Hears]) -> set[str]:
-    """Return the names for which rows of a state take questions."""
+    """Return the names for which rows of a state accept questions."""
     return {name for row in block if row.way == "asked" for name in row.names}
 
 

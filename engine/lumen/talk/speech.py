@@ -67,7 +67,7 @@ class WordList:
 
 
 class Speech:
-    """How sentences are read by the word lists of a behaviour."""
+    """The word lists of a behaviour, folded, with which sentences are read."""
 
     def __init__(self, phrases: Phrases, answers: Mapping[str, Sequence[Answer]]) -> None:
         self._same: dict[str, tuple[str, ...]] = {}

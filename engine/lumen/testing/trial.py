@@ -39,12 +39,12 @@ class RobotTrial:
         """All events so far."""
 
     def start(self, id: str, command: RobotCommand) -> None:
-        """Start a command."""
+        """Start a command under an id; fail if the robot raises or blocks."""
         with self._calling("start"):
             self._robot.start(id, command)
 
     def cancel(self, id: str) -> None:
-        """Cancel a command."""
+        """Cancel the command with that id; fail if the robot raises or blocks."""
         with self._calling("cancel"):
             self._robot.cancel(id)
 

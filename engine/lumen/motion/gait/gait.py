@@ -127,7 +127,7 @@ class Gait:
         return footsteps(self.feet, self.goal, self._side, self.pace)
 
     def face(self, measured: Mapping[str, float], heading: float) -> None:
-        """Take the present feet as correct, with leg angles and heading as for `tick`."""
+        """Assume that the present estimates of the feet are right; leg angles and heading are as for `tick`."""
         self._tracker = StepTracker(self._legs, self.feet, measured, heading)
 
     def tick(self, measured: Mapping[str, float], heading: float) -> GaitTick | None:

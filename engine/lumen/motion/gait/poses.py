@@ -37,7 +37,7 @@ class Pose(NamedTuple):
 
 
 def pose(place: complex, theta: float) -> Pose:
-    """Return the pose at a complex place."""
+    """Return the pose at a place x + iy [m] with the heading `theta` [rad]."""
     return Pose(place.real, place.imag, theta)
 
 

@@ -1,8 +1,8 @@
 """A foot in the air: its swing, where it has to land to catch a fall, and how a leg holds it level on the way.
 
-A body falls away from the point it rests on, its DCM exponentially: seen now, it says where it will be when the foot
-lands. There the foot has to stand (Pratt and others, "Capture point: a step toward humanoid push recovery", 2006).
-Points are (forward, left) [m], level with the ground, seen from the bearing sole.
+A body falls away from the point on which it rests, and its DCM moves exponentially, so the present DCM determines where
+it will be when the foot lands. The foot must land there (Pratt and others, "Capture point: a step toward humanoid push
+recovery", 2006). Points are (forward, left) [m], level with the ground, seen from the bearing sole.
 """
 
 from collections.abc import Mapping

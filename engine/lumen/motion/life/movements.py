@@ -75,10 +75,12 @@ def settle(settles: Settles, since: float) -> Mapping[str, float]:
 
 
 WARM, HOT = 60.0, 72.0
-"""Motors of a part of the body that are warmer than that move less, and from there on not at all [degrees Celsius]."""
+"""In idle life, a part of the body moves less if its motors are warmer than `WARM`, and not from `HOT` on [degrees
+Celsius].
+"""
 
 LOW, EMPTY = 25.0, 5.0
-"""A battery with less than that lets the robot do less, and from there on nothing of its own accord [%]."""
+"""Idle life is reduced if the charge of the battery is below `LOW`, and absent from `EMPTY` down [%]."""
 
 
 def vigour(temperature: float, percentage: float) -> float:
@@ -160,7 +162,7 @@ def nod(nods: Nods, seed: int, t: float) -> float:
 
 
 def look_towards(attention: Attention | None, lasts: float, t: float) -> tuple[float, float]:
-    """Return the head's offset at `t` [s] due to attention that `lasts` so long [s]: (yaw, pitch) [rad]."""
+    """Return the head's offset at `t` [s] due to attention that lasts for `lasts` [s]: (yaw, pitch) [rad]."""
     if attention is None:
         return 0.0, 0.0
     part = _smooth(_phase(attention, lasts, t))
