@@ -118,7 +118,7 @@ def quartiles(values: list[float]) -> tuple[float, float, float]:
 
 
 def paired(robot: str, lookers: tuple[int, int], seconds: float, *, console_first: bool) -> Pair:
-    """Run the tour once: a block without a console, and one with a console, pages and watchers."""
+    """Run the tour once: a block without a console, and one with a console, with `lookers` pages and watchers."""
     folder = temporary_folder("lumen-console-")
     shutil.copy(ROOT / MAIN_FILE, folder)
     for name in (name for name in PROJECT_FOLDERS if (ROOT / name).is_dir()):
@@ -143,7 +143,7 @@ def paired(robot: str, lookers: tuple[int, int], seconds: float, *, console_firs
 
 
 def measured(exhibition: Exhibition, seconds: float, server: Guarded[str] | None, pages: Guarded[str] | None) -> Round:
-    """Tick, and measure after `SETTLED` [s]."""
+    """Tick for `seconds` after `SETTLED` [s], or until the exhibition ends; return what was measured in that time."""
     late, began, before, counting, bytes_before = list[float](), time.monotonic(), 0.0, False, (0.0, 0.0)
     cpu = server_cpu = 0.0
     told = Told(pages) if pages else None

@@ -88,7 +88,7 @@ def looks(url: str) -> tuple[list[float], list[float]]:
 
 
 def asleep(robot: Driven) -> float:
-    """From the command `rest` to its end, when the head lies [s]."""
+    """Return the time from the command `rest` to its end, when the head lies [s]."""
     robot.answer("wake again", Wake())
     begin = time.monotonic()
     robot.answer("rest", Rest())
@@ -96,7 +96,7 @@ def asleep(robot: Driven) -> float:
 
 
 def lost(robot: Driven, project: Project, kill: Callable[[], None]) -> float:
-    """From the end of the daemon, in a dance, to `robot.lost` [s]."""
+    """Return the time from the end of the daemon, in a dance, to `robot.lost` [s]."""
     robot.answer("wake for a dance", Wake())
     robot.robot.start("dance", Perform(project.motions["dance"]))
     robot.until(lambda: abs(robot.joints()["head_roll"]) > 0.1, "it dances")

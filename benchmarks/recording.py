@@ -44,7 +44,7 @@ class Round(NamedTuple):
 
 
 def live(robot: str, camera: bool | None, seconds: float) -> Round:
-    """Run the tour once."""
+    """Run the tour for `seconds`; return its measurements. A `camera` of None means that nothing is recorded."""
     folder = Path(tempfile.mkdtemp())
     try:
         project = lumen.load(ROOT)

@@ -59,22 +59,35 @@ class Outcome:
     broken: int = 0
     sent: int = 0
     counted: int = 0
+    """The number of sent events that the behaviour counted."""
     ticks: int = 0
     missed: int = 0
+    """The number of ticks that began more than two periods after the tick before."""
     gap: float = 0.0
+    """The longest time between the beginnings of two ticks."""
     beside: int = 0
+    """The number of ticks that a process beside this one missed, which only ticks."""
     wrong: list[str] = field(default_factory=list)
+    """A sentence for each wrong verdict, and one if the writer failed."""
     applied: int = 0
     refused: int = 0
     waited: int = 0
+    """The number of verdicts `waiting`: the files are good, but the robot can't change yet."""
     unanswered: int = 0
+    """The number of edits without a final verdict within `PATIENCE`."""
     single: list[float] = field(default_factory=list)
+    """Times from a good edit of one file to its first verdict."""
     verdicts: list[float] = field(default_factory=list)
+    """The same times for all other edits."""
     own: list[float] = field(default_factory=list)
+    """The part of each of these times that the validation took."""
     swaps: list[float] = field(default_factory=list)
+    """The time that each applied change took on the running thread."""
     memory: tuple[int, int] = (0, 0)
+    """The memory of this process after `WARM` of the edits, and at the end [bytes]; so `threads` and `handles`."""
     threads: tuple[int, int] = (0, 0)
     handles: tuple[int, int] = (0, 0)
+    """The numbers of open files."""
 
     @property
     def lost(self) -> int:
@@ -120,7 +133,7 @@ print(missed)
 
 @contextmanager
 def metronome() -> Iterator[list[int]]:
-    """Run a process that only ticks; its number of missed ticks is known at the end."""
+    """Run a process that only ticks; when it has ended, the yielded list holds its number of missed ticks."""
     missed: list[int] = []
     with Guarded([sys.executable, "-c", METRONOME], stdin=PIPE, stdout=PIPE) as process:
         yield missed
@@ -229,7 +242,7 @@ class Soak:
             self.count(0)
 
     def wait(self, hash: str, saved: float, seen: int, verdicts: list[float]) -> None:
-        """Wait for a verdict on these files, and for good ones to become active; append the time to `verdicts`."""
+        """Wait for the final verdict on the files with this hash; append the time to their first one to `verdicts`."""
         outcome, deadline = self.outcome, saved + PATIENCE
         first = True
         while time.monotonic() < deadline:
@@ -251,7 +264,7 @@ class Soak:
         outcome.unanswered += 1
 
     def check(self, told: Told) -> None:
-        """Record whether a verdict is right."""
+        """Count a verdict, and note it in `wrong` if the writer's files do not justify it."""
         outcome = self.outcome
         if told.verdict == "applied":
             outcome.applied += 1

@@ -76,7 +76,7 @@ def _found(package: Package) -> list[Place]:
 
 
 def tables(package: Package) -> Iterator[Place]:
-    """Yield the tables."""
+    """Yield each table: its rows name functions, classes or modules of other files."""
     imported = _imported(package)
     for row in _literals(package):
         things = imported[row.file.path]
@@ -91,7 +91,7 @@ def tables(package: Package) -> Iterator[Place]:
 
 
 def names(package: Package) -> Iterator[Place]:
-    """Yield the lists of names."""
+    """Yield each list whose texts name the modules of a folder."""
     folders: dict[str, set[str]] = defaultdict(set)
     for file in package.files:
         folder, _, name = file.path.removesuffix("/__init__.py").removesuffix(".py").rpartition("/")
@@ -106,7 +106,7 @@ def names(package: Package) -> Iterator[Place]:
 
 
 def chains(package: Package) -> Iterator[Place]:
-    """Yield the chains."""
+    """Yield each chain of branches that makes objects of classes from different files."""
     imported = _imported(package)
     branches: dict[tuple[int, str], list[list[ast.stmt]]] = defaultdict(list)
     around: dict[int, Scoped] = {
@@ -124,7 +124,7 @@ def chains(package: Package) -> Iterator[Place]:
 
 
 def enumerations(package: Package) -> Iterator[Place]:
-    """Yield the enumerations."""
+    """Yield each enumeration whose members several other files distinguish."""
     members = {
         name: {last_word(target) for node in kind.node.body if isinstance(node, ast.Assign) for target in node.targets}
         for name, (kind, *_) in package.classes.items()

@@ -106,7 +106,7 @@ class Counted(NamedTuple):
 
 
 def messages(file: str) -> Iterator[Prose]:
-    """Each string of a module that holds a sentence, docstrings left out."""
+    """Yield each string of a Python module or of the console's texts that holds a sentence, without docstrings."""
     if file.endswith(".js"):
         for number, row in enumerate((ROOT / file).read_text(encoding="utf-8").splitlines(), 1):
             yield from (Prose(file, number, told) for told in re.findall(r'": "((?:[^"\\\\]|\\\\.)+)"', row))
@@ -128,7 +128,7 @@ def messages(file: str) -> Iterator[Prose]:
 
 
 def comments(file: str) -> Iterator[Prose]:
-    """The lines of a module's docstrings, and its comments."""
+    """Yield the lines of a module's docstrings, and its comments of more than one word."""
     for node in parsed(file):
         if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant) and isinstance(node.value.value, str):
             for offset, row in enumerate(node.value.value.splitlines()):
@@ -141,13 +141,13 @@ def comments(file: str) -> Iterator[Prose]:
 
 @cache
 def parsed(file: str) -> list[ast.AST]:
-    """The statements, strings and f-strings of a module."""
+    """Return the expression statements, constants and f-strings of a module."""
     tree = ast.parse((ROOT / file).read_text(encoding="utf-8"))
     return [node for node in ast.walk(tree) if isinstance(node, (ast.Expr, ast.Constant, ast.JoinedStr))]
 
 
 def paragraphs(file: str) -> Iterator[Prose]:
-    """The lines of a page, without its code."""
+    """Yield the lines of a page that are neither blank nor code."""
     fenced = False
     for number, row in enumerate((ROOT / file).read_text(encoding="utf-8").splitlines(), 1):
         if row.lstrip().startswith("```"):
@@ -157,7 +157,7 @@ def paragraphs(file: str) -> Iterator[Prose]:
 
 
 def sentences(file: str) -> Iterator[Prose]:
-    """The sentences of a page that have five words or more; code between backticks stays."""
+    """Yield the sentences of a page that have five words or more, with the code between backticks."""
     text, fenced, start = "", False, 1
     for number, row in enumerate([*(ROOT / file).read_text(encoding="utf-8").splitlines(), ""], 1):
         fenced ^= row.lstrip().startswith("```")
@@ -178,7 +178,7 @@ def sentences(file: str) -> Iterator[Prose]:
 
 
 def prose(file: str) -> Iterator[Prose]:
-    """Everything in a file that a person reads."""
+    """Return all text in a file that a person reads."""
     if file.endswith(".md"):
         return paragraphs(file)
     return chain(messages(file), comments(file)) if file.endswith(".py") else messages(file)
@@ -228,7 +228,7 @@ def groups() -> Iterator[Counted]:
 
 
 def changed_lines() -> dict[str, set[int]]:
-    """The lines that a branch adds to main, or else the last commit to its parent; none without a history.
+    """Return the numbers of the lines, by file, that a branch adds to main, or else the last commit to its parent.
 
     Moved lines are left out.
     """
@@ -262,7 +262,7 @@ def _is_read(file: str) -> bool:
 
 
 def docstrings(file: str) -> Iterator[Prose]:
-    """The docstring of each class and function of a module, after the signature that a reader sees beside it."""
+    """Yield the docstring of each class and function of a module, after its signature."""
     for node in ast.walk(ast.parse((ROOT / file).read_text(encoding="utf-8"))):
         if isinstance(node, (ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)) and (
             told := ast.get_docstring(node)

@@ -1,6 +1,6 @@
 """Build the extension of VS Code: `python scripts/vsix.py --output lumen.vsix`. Needs npm the first time.
 
-A VSIX is a zip with the extension's folder, the packages that it runs on, and two lists of what is in it.
+A VSIX is a zip with the extension's folder, the packages that it runs on, and two lists of its content.
 """
 
 import argparse

@@ -34,7 +34,7 @@ class JournalFolder:
         return sorted(self.folder.glob(f"*{JOURNAL_SUFFIX}"))
 
     def next_position(self) -> int:
-        """Return the position after the last entry that can be read; 0 if there is none."""
+        """Return the position after the last entry that can be read; 0 without such an entry."""
         for file in reversed(self.files()):
             try:
                 content = read_journal(file)
@@ -48,7 +48,7 @@ class JournalFolder:
         private_folder(self.folder)
         name = f"{header.first:012d}-{file_stamp(header.began)}-{header.run[:8]}{JOURNAL_SUFFIX}"
         handle = os.open(self.folder / name, os.O_WRONLY | os.O_CREAT | os.O_TRUNC | os.O_APPEND | NO_LINK, 0o600)
-        file = open(handle, "wb", buffering=0)  # noqa: SIM115  it is closed where it is written
+        file = open(handle, "wb", buffering=0)  # noqa: SIM115  the writer closes it
         file.write(header.line())
         return file
 
@@ -70,7 +70,7 @@ class JournalFolder:
 
 
 def newest(home: Path) -> Path | None:
-    """Return the journal file in a state folder that a run writes, or wrote last; None if there is none."""
+    """Return the journal file in a state folder that a run writes, or wrote last; None without such a file."""
     return max((home / JOURNAL_FOLDER).glob(f"*{JOURNAL_SUFFIX}"), default=None)
 
 

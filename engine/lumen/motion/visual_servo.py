@@ -1,4 +1,4 @@
-"""How far to turn for one sighting, from the angles of the joints when the image was taken.
+"""Computes the angle to turn for one sighting, from the angles of the joints when the image was taken.
 
 The plain answer is the controller's output times the binding's gain. Under minimum and maximum that answer has a flaw:
 as long as the term in the middle fires enough to cover the others, the centroid does not move at all. With Tables 1 and

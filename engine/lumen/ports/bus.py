@@ -19,7 +19,7 @@ class Message(NamedTuple):
     body: Any
     """JSON data."""
     reply_to: str = ""
-    """The key for answers; empty if none is wanted."""
+    """The key for answers; empty if the sender wants no answer."""
     correlation_id: str = ""
     """A text that identifies the request in its answers."""
     id: str = ""
@@ -101,7 +101,9 @@ class Bus(Protocol):
     ) -> None:
         """Send a body (JSON data), from any thread. Raises BusError after `close`, or if the body is not JSON data.
 
-        The bus sets the fields that `origin` leaves empty: a unique id, its own `sender`, and the time.
+        Answers go to the key `reply_to` and carry `correlation_id`. A message that waits longer than `ttl` [s] may be
+        discarded; None: the limit of its route. The bus sets the fields that `origin` leaves empty: a unique id, its
+        own `sender`, and the time.
         """
         id, sender, time, cause = origin
         id = id or f"{PREFIX}-{next(NUMBERS)}"

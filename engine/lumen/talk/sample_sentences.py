@@ -53,7 +53,7 @@ def of_row(
 ) -> Iterator[str]:
     """Yield sentences for which a row may be taken, the simplest first; another row of its state may match more words.
 
-    `literals` are tried in its slots, too: its guard may compare them with what is caught.
+    `literals` are tried in its slots, too, because its guard may compare them with the words in the slots.
     """
     if row.way == "else":
         yield from NONSENSE

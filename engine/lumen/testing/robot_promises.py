@@ -11,7 +11,7 @@ from lumen.testing.trial import RobotTrial
 
 ENDS = ("done", "error", "cancelled")
 TOLERANCE = 0.05
-"""How far a joint may sag or swing beyond a limit or a goal [rad]."""
+"""The angle by which a joint may sag or swing beyond a limit or a goal [rad]."""
 
 
 def test_a_command_is_answered_once(trial: RobotTrial) -> None:

@@ -48,7 +48,7 @@ class Ration:
             yield self._held.pop(next(iter(self._held)))
 
     def wait(self, now: float) -> float | None:
-        """Return the time until an alert may be due [s], at most `LONGEST_WAIT`; None if none is held back."""
+        """Return the time until an alert may be due [s], at most `LONGEST_WAIT`; None if no alert is held."""
         if not self._held:
             return None
         soonest = min(self._given.get(key, now) + self._interval * (key in self._given) for key in self._held)

@@ -200,7 +200,7 @@ class AlertPart(Part, Observer):
         self._own = own_modules(project.modules)
 
     def helpless(self, reason: str) -> None:
-        """Report that the robot rests because a part failed without which nobody could stop the robot."""
+        """Report that the robot rests because a part failed that is needed to stop the robot."""
         self._desk("crashed", "a part of Lumen failed. The robot rests, because nobody could have stopped it any more")
 
     def part_stopped(self, part: str) -> None:

@@ -1,6 +1,4 @@
-"""The module `answers`: sends a language model questions that no passage answers, and limits what may be said of its
-answers.
-"""
+"""The module `answers`: sends a language model the questions that no passage answers, and limits its answers."""
 
 import json
 import logging

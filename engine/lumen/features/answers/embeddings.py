@@ -70,7 +70,7 @@ class Embeddings:
     """Finds passages by a question's meaning, as far as vectors show it, and by its words.
 
     A passage is an answer if it is as probable as the exhibition's own questions (`knowledge/questions`) require;
-    without such questions, none is. Vectors are kept; those of passages are computed at the first question, or by
+    without such questions, no passage is. Vectors are kept; those of passages are computed at the first question, or by
     `prepare`. `said` is the section of lumen.yaml about embeddings.
     """
 

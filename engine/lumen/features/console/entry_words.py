@@ -129,7 +129,7 @@ def _said(entry: Mapping[str, Any]) -> Mapping[str, Any]:
 
 
 def _noted(said: Mapping[str, Any], words: EntryPhrases) -> str:
-    """Return the text of a person's mark or note, with the person; empty if there is none."""
+    """Return the text of a person's mark or note, with the person; empty for another entry."""
     what = next((key for key in (MARK, NOTE) if key in said), "")
     if not what:
         return ""

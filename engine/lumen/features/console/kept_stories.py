@@ -25,7 +25,7 @@ class KeptStory(NamedTuple):
     file: Path
     """Its file, relative to the project's folder."""
     remark: str
-    """What the robot does differently with the files of today; empty if it does the same."""
+    """The robot's actions that differ with the files of today; empty if all are the same."""
 
 
 def keep_story(root: Path, position: int, robot: str = "", *, visitor: str = "", name: str = "") -> KeptStory:
@@ -54,7 +54,7 @@ def keep_story(root: Path, position: int, robot: str = "", *, visitor: str = "",
 
 
 def _visit(root: Path, position: int, robot: str, bundles: KeptBundles) -> RecordedVisit:
-    """Return the visit with that entry. Raises UsageError if there is none, or a visitor in it was forgotten."""
+    """Return the visit with that entry. Raises UsageError if no visit has it, or a visitor in it was forgotten."""
     recorded = visits(with_machines(chosen(root, None, all=True, robot=robot).entries(), bundles))
     for visit in recorded:
         if visit.first <= position <= visit.last:

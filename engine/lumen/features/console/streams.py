@@ -22,7 +22,7 @@ AGAIN = 500
 
 @dataclass
 class ReadPosition:
-    """How far a page has received the journal and the state of one robot."""
+    """The positions up to which a page has received the journal and the state of one robot."""
 
     position: int
     """The position of the last entry that it has."""

@@ -26,7 +26,7 @@ ROBOT_CAMERA = "robot"
 
 
 class VideoSource:
-    """Frames of a webcam, given by its number, or of a video file in `root`. Raises ModuleError if there is none."""
+    """Frames of a webcam, given by its number, or of a video file in `root`. Raises ModuleError without that source."""
 
     def __init__(self, camera: int | str, root: Path) -> None:
         cv2 = self._cv2 = opencv()

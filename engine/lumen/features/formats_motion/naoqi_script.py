@@ -34,7 +34,7 @@ MAX_PARTS = 1_000_000
 
 
 class TooManyStepsError(Exception):
-    """The script takes more than MAX_STEPS steps, or has too many parts; `place` is where it stopped."""
+    """The script takes more than MAX_STEPS steps, or has too many parts; reading it stopped at `place`."""
 
     def __init__(self, place: Place) -> None:
         super().__init__(str(place))

@@ -102,7 +102,7 @@ class OwnFunctions:
         self.classes = {node.name for node in classes}
 
     def called(self, call: ast.Call) -> FunctionNode | None:
-        """Return the function of the file that a call refers to, None if there is none."""
+        """Return the function of the file that a call refers to, None if it calls no such function."""
         match call.func:
             case ast.Name(id=name):
                 return self.plain.get(name)
@@ -159,7 +159,7 @@ def _moves(body: list[ast.stmt]) -> bool:
 
 def lists_of(body: list[ast.stmt]) -> NamedLists | None:
     """Return the lists of a motion that statements fill: those of Choregraphe's export, or three that are returned;
-    None if there are none.
+    without such lists, None.
     """
     nodes = list(_inner(body))
     if set(USUAL_LISTS) <= {n.id for n in nodes if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Store)}:

@@ -51,7 +51,9 @@ class RobotView:
         )
 
     def look(self, at: float) -> Iterator[RecordedMessage]:
-        """Yield the shapes of the links, valid from then on [s since 1970]."""
+        """Yield the message with the shapes of all links, valid from the time `at` [s since 1970]; nothing without
+        links.
+        """
         if self._links is None:
             return
         update, entities = form_class("SceneUpdate")(), dict[str, Any]()

@@ -91,7 +91,7 @@ class Store:
         self._do(lambda db: db.executemany(sql, rows))
 
     def met(self, name: str, now: float, data: Mapping[str, Any] | None = None) -> None:
-        """Note a visit of the person with that name, and add `data` to what is known of them."""
+        """Store a visit, at `now` [s since 1970], of the person with that name; add `data` to the person's data."""
         name = _sound(name)
         known = self.visitor(name)
         known_data = _json({**(known["data"] if known else {}), **(data or {})})

@@ -92,7 +92,7 @@ class Espeak:
 
 @cache
 def espeak() -> Espeak:
-    """Return the library of the package `espeakng-loader`, else of this system. Raises ModuleError if there is none."""
+    """Return the library of the package `espeakng-loader`, else of this system. Raises ModuleError without either."""
     try:
         import espeakng_loader
     except ImportError:

@@ -26,7 +26,7 @@ def middle(feet: Feet) -> Pose:
 
 
 def beside(body: Pose, side: Side, pace: GaitParameters) -> Pose:
-    """Return the pose of the foot on that side, for a robot that stands at the pose `body`."""
+    """Return the pose of the foot on that side, for a standing robot whose pose is `body`."""
     return body.then(Pose(0.0, sign(side) * pace.apart / 2, 0.0))
 
 

@@ -1,4 +1,4 @@
-"""A foot in the air: its swing, where it has to land to catch a fall, and how a leg holds it level on the way.
+"""A foot in the air: its swing, the point at which it must land to catch a fall, and the angles that keep it level.
 
 A body falls away from the point on which it rests, and its DCM moves exponentially, so the present DCM determines where
 it will be when the foot lands. The foot must land there (Pratt and others, "Capture point: a step toward humanoid push

@@ -123,7 +123,7 @@ def _open(schema: Mapping[str, object]) -> dict[str, object]:
 
 
 def _jpeg(body: Any) -> bytes:
-    """Return the JPEG in a body, empty if there is none."""
+    """Return the JPEG in a body, empty if it holds no JPEG as a base64 URL."""
     url = body.get("contentUrl") if isinstance(body, Mapping) else None
     if not isinstance(url, str) or not url.startswith(PICTURE):
         return b""
