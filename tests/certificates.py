@@ -1,4 +1,4 @@
-"""An authority of our own, and the certificate that it signs for a broker."""
+"""A certificate authority, and the certificate that it signs for a broker."""
 
 from pathlib import Path
 

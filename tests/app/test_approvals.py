@@ -248,7 +248,7 @@ HEARD = "routes: {heard: {key: lumen.heard, direction: in, schema: speech.recogn
 
 
 def test_who_decides_hears_the_words_and_what_comes_of_them(folder: Path) -> None:
-    """All of what the robot would do until the next transition, in order; the words before that."""
+    """A waiting event lists the robot's actions until the next transition, in order, and `now` the visitor's words."""
     (folder / "behaviors" / "mine.yaml").write_text(TALKS)
     with (folder / "lumen.yaml").open("a") as main:
         main.write(HEARD)

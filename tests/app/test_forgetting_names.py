@@ -1,4 +1,4 @@
-"""Names to be forgotten: none that waits is lost, and the files of a running exhibition are left to it."""
+"""The queue of names to forget: it loses no name, and leaves the files of a running exhibition to that exhibition."""
 
 from collections.abc import Callable
 from pathlib import Path

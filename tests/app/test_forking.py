@@ -1,4 +1,4 @@
-"""Fork from here: what was, and what would have been with another event or with the saved files."""
+"""Forks of a run: a replay, and one with another event or with the saved files."""
 
 from collections.abc import Iterator
 from pathlib import Path

@@ -36,7 +36,7 @@ tour:
 
 
 def added(text: str, saying: Saying = SAID) -> str:
-    """The lines that a saying adds to a text; no other line is changed."""
+    """Return the lines that a saying adds to a text; fail if it changes another line."""
     after = with_saying(text.encode(), saying).decode()
     changed = [*unified_diff(text.splitlines(), after.splitlines(), n=0)][3:]
     assert all(line.startswith("+") for line in changed)

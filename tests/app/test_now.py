@@ -27,7 +27,7 @@ Asker = Callable[..., dict[str, Any]]
 
 
 def asker(exhibition: Exhibition, bus: Bus) -> Asker:
-    """Asks, and lives until the answer is there."""
+    """Return a function that sends a request and runs the exhibition until the answer arrives."""
     came: list[Any] = []
     bus.subscribe(ANSWERS, lambda message: came.append(message.body))
 
@@ -162,7 +162,7 @@ def test_who_asks_is_the_named_person_else_the_program(body: dict[str, str], sen
 
 
 def test_the_data_of_an_event_is_as_declared_or_refused_with_what_would_be_right(mine: Path) -> None:
-    """By `events:` of the behaviour, by what robots raise, and by the messages of routes."""
+    """Data of an event must fit its declaration in `events:` of the behaviour, of the robot, or in a route's schema."""
     bus = connect("memory://")
     with lumen.open(mine, bus=bus) as exhibition:
         send_request = asker(exhibition, bus)

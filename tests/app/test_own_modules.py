@@ -142,7 +142,7 @@ def test_a_flood_of_lines_is_bounded(processes: "Starter") -> None:
 
 
 def test_close_ends_all_that_the_program_has_started(processes: "Starter") -> None:
-    """Even a program that ignores SIGTERM, and its background processes."""
+    """`close` ends even a program that ignores SIGTERM, and its background processes."""
     process = processes("sh", "-c", "trap '' TERM; sleep 1000 & echo $$ $!; wait")
     process.tick()
     pids = [int(word) for word in printed(process, 1)[0].split()]
@@ -174,7 +174,7 @@ def test_the_program_ends_with_an_exhibition_that_is_killed(tmp_path: Path) -> N
 
 
 class Watched:
-    """A part without an exhibition around it."""
+    """The part that watches a module, without an exhibition."""
 
     def __init__(self, project: Project, settings: ModuleSettings, time: Time, bus: Bus | None = None) -> None:
         self.project = project
@@ -188,7 +188,7 @@ class Watched:
         self.part.begin(0.0)
 
     def tick(self, seconds: float = 0.0) -> list[str]:
-        """Return the events of a tick this much later [s]."""
+        """Advance the clock by `seconds` and tick; return the names of the events."""
         self.time.now += seconds
         before = len(self.events)
         self.part.tick(0.0, ())
@@ -343,7 +343,7 @@ def test_if_lumen_yaml_is_broken_its_errors_come_before_an_unknown_part(
 def test_a_program_on_another_machine_shows_that_it_lives_over_a_broker(
     project: Project, time: Time, broker: RabbitMQ
 ) -> None:
-    """It passes what `lumen run` would set for it; a raw message on the presence key counts as well."""
+    """Arguments give the module what `lumen run` would set in its environment."""
     bus = connect(broker.url)
     watched = Watched(project, ModuleSettings(command=("mood",), health=60.0), time, bus)
     with join("mood", robot=project.robot, bus=broker.url) as module:

@@ -1,4 +1,4 @@
-"""The table of an operator's requests: each has a schema, is described, and is refused by it alone."""
+"""The table of operator requests: each is described, and refused by its schema alone."""
 
 import re
 from typing import Any

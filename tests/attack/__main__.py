@@ -23,7 +23,7 @@ from tests.rabbitmq import RabbitMQ
 
 
 def table(found: list[Survey]) -> str:
-    """A row for each way in, and beneath it what came of the attacks."""
+    """Return a table with a row for each lane, and beneath it the number of attacks with each outcome."""
     names = ("attacks", "checks", "seconds", "a second", "memory", "threads", "handles")
     lines = [f"{'way in':<9}" + "".join(name.rjust(11) for name in names)]
     for one in found:
@@ -37,14 +37,14 @@ def table(found: list[Survey]) -> str:
 
 
 def named(numbers: list[int]) -> str:
-    """The attacks that broke something together."""
+    """Return a phrase for the attacks that together broke a target."""
     if len(numbers) > 10:
         return f"{len(numbers)} attacks from {numbers[0]} to {numbers[-1]} together"
     return f"attack {', '.join(map(str, numbers))}"
 
 
 def report(numbers: Iterable[int], url: str) -> list[str]:
-    """Print what came of those attacks; what broke, and what grew."""
+    """Run these attacks and print a table; return a line for each fault, and for each resource that grew."""
     began = time.monotonic()
     found = survey(numbers, url)
     print(f"\n{platform.machine()}, {os.cpu_count()} cores, CPython {platform.python_version()}, recording robot\n")
@@ -57,7 +57,7 @@ def report(numbers: Iterable[int], url: str) -> list[str]:
 
 
 def report_imports(numbers: Iterable[int], folders: Sequence[Path], most: int) -> list[str]:
-    """Print the outcomes of those changes; return the changes that were lost silently."""
+    """Import these changed files and print the outcomes; return the changes that were lost silently."""
     logging.getLogger("lumen").setLevel(logging.CRITICAL)
     began = time.process_time()
     found = attack_imports(numbers, folders, most=most)

@@ -1,4 +1,4 @@
-"""Attacks by their number: which kind each is, and what it draws from. The same number is always the same attack."""
+"""Attacks by number, which determines an attack's kind and random generator: an attack is always the same."""
 
 from collections.abc import Iterator
 from enum import StrEnum
@@ -20,7 +20,7 @@ SHARES = {Kind.MESSAGE: 0.58, Kind.FRAME: 0.3588, Kind.FOREIGN: 0.06, Kind.FILE:
 
 
 class Attack(NamedTuple):
-    """One attack; `random` is what its generator draws from."""
+    """One attack; its generator draws from `random`."""
 
     number: int
     kind: Kind
@@ -28,13 +28,13 @@ class Attack(NamedTuple):
 
 
 def attack(number: int) -> Attack:
-    """The attack of that number."""
+    """Return the attack with that number."""
     random = Random(number)
     (kind,) = random.choices(list(SHARES), list(SHARES.values()))
     return Attack(number, kind, random)
 
 
 def batches(numbers: list[int], size: int) -> Iterator[list[int]]:
-    """So many at a time, in their order."""
+    """Yield the numbers in order, `size` at a time; the last batch may be smaller."""
     for begin in range(0, len(numbers), size):
         yield numbers[begin : begin + size]

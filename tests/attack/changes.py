@@ -45,7 +45,7 @@ Changer = Callable[[Random, str], Change | None]
 
 
 def changed(random: Random, ending: str, text: str) -> Change | None:
-    """Return a random change of a file with that ending."""
+    """Return a random change of a file with that ending, None if it has nothing to change."""
     return CHANGERS[ending](random, text)
 
 

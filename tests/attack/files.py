@@ -3,9 +3,9 @@
     project_file(random, files)   a path in a project, and its new content: one of `files`, damaged, or another
     foreign_file(random)          a name, and the content of a statechart, motion or controller of another tool
 
-`files` are those of a sound project, by path (`lumen.project.files.read_files`). What comes is a file with one to three
-damages, each a small function of a text (`DAMAGES`), or a file that means nothing but harm (`MONSTERS`). It depends on
-nothing but the seed, and is never much larger than `LARGEST`.
+`files` are those of a sound project, by path (`lumen.project.files.read_files`). The content has one to three damages,
+each made by a small function (`DAMAGES`), or is hostile as a whole (`MONSTERS`). It depends only on the seed, and is
+never much larger than `LARGEST`.
 """
 
 import re
@@ -45,21 +45,21 @@ def project_file(random: Random, files: Mapping[str, bytes]) -> tuple[str, bytes
 
 
 def foreign_file(random: Random) -> tuple[str, bytes]:
-    """The name of a file of another tool, and what it holds."""
+    """Return the name of a file of another tool, and its hostile content."""
     ending = random.choice(sorted(FOREIGN))
     text = random.choice(MONSTERS)(random) if random.random() < 0.1 else damaged(random, FOREIGN[ending])
     return f"attack.{ending}", _encoded(random, text)
 
 
 def damaged(random: Random, text: str) -> str:
-    """The text with one to three damages."""
+    """Return the text with one to three damages, cut at `LARGEST` characters."""
     for _ in range(random.randrange(1, 4)):
         text = random.choice(DAMAGES)(random, text)[:LARGEST]
     return text
 
 
 def _encoded(random: Random, text: str) -> bytes:
-    """The text as bytes, seldom in another encoding or with bytes that are none."""
+    """Return the text as UTF-8, seldom in another encoding or with invalid bytes."""
     data = text.encode("utf-8", "surrogatepass")[:LARGEST]
     match random.randrange(30):
         case 0:
@@ -73,7 +73,7 @@ def _encoded(random: Random, text: str) -> bytes:
 
 
 def _matched(random: Random, pattern: re.Pattern[str], text: str, new: str) -> str:
-    """The text with something else in place of one that matches."""
+    """Return the text with `new` in place of a random match, or at its end without a match."""
     found = list(pattern.finditer(text))
     if not found:
         return text + new
@@ -99,7 +99,7 @@ def _quoted(random: Random, text: str) -> str:
 
 
 def _lines(random: Random, text: str) -> str:
-    """Lines doubled, gone, moved or further in."""
+    """Return the text with a line doubled, removed, moved or indented further."""
     lines = text.split("\n")
     at, other = random.randrange(len(lines)), random.randrange(len(lines))
     new: tuple[list[str], ...] = (
@@ -115,7 +115,7 @@ def _lines(random: Random, text: str) -> str:
 
 
 def _repeated(random: Random, text: str) -> str:
-    """A part of it hundreds of times."""
+    """Return the text with a part of it repeated 3, 100 or 3,000 times."""
     at, length = random.randrange(len(text) + 1), random.choice((1, 5, 40, 400))
     return text[:at] + text[at : at + length] * random.choice((3, 100, 3_000)) + text[at:]
 
@@ -141,7 +141,7 @@ DAMAGES: tuple[Damage, ...] = (_cut, _number, _word, _quoted, _lines, _repeated,
 
 
 def _bomb(random: Random) -> str:
-    """Aliases of aliases."""
+    """Return YAML with aliases of aliases, which would expand to at most 10^11 entries."""
     lines = ["a0: &a0 [x, x, x, x, x, x, x, x, x, x]"]
     lines += [f"a{i}: &a{i} [{', '.join([f'*a{i - 1}'] * 10)}]" for i in range(1, random.randrange(2, 12))]
     return "\n".join(lines)
@@ -152,7 +152,7 @@ def _circle(random: Random) -> str:
 
 
 def _wide(random: Random) -> str:
-    """Very many of one thing."""
+    """Return a text that repeats one element very often."""
     one = random.choice(
         ("- 1\n", "a, ", "x: 1\n", "%TAG !a! b:\n", "&a ", "!t ", "---\n", "<a/>", "{}", '"', "'", "\n", "é")
     )
@@ -176,7 +176,7 @@ def _noise(random: Random) -> str:
 
 
 MONSTERS: tuple[Monster, ...] = (_bomb, _circle, _wide, _entities, _deep, _noise)
-"""Files that never were anything else."""
+"""Makers of texts that are hostile as a whole."""
 
 _KEYS = "names = list()\ntimes = list()\nkeys = list()\nnames.append('HeadYaw')\ntimes.append([1, 2.5])\n"
 FOREIGN: Mapping[str, str] = {

@@ -1,6 +1,6 @@
-"""A child that imports hostile files: a number on standard input, what came of it as a line of JSON on standard output.
+"""A child that imports hostile files: it reads an attack's number from standard input, and prints a line of JSON.
 
-A file that takes longer than `LIMIT` ends the child by an alarm, as a crash would: both are heard of by who asked.
+A file that takes longer than `LIMIT` ends the child by an alarm; its parent notices this as it notices a crash.
 """
 
 import io
@@ -24,7 +24,7 @@ LIMIT = 20
 
 
 def imported(folder: Path, number: int) -> dict[str, Any]:
-    """The exit code, and what no file may cause: a traceback, or anything but a line or findings."""
+    """Import the file of that attack; return the exit code, the fault that no file may cause, if any, and the size."""
     name, content = foreign_file(attack(number).random)
     (folder / name).write_bytes(content)
     told = io.StringIO()

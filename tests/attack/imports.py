@@ -1,4 +1,4 @@
-"""Attacks by a file of another tool, on who imports it."""
+"""The lane that attacks `lumen import` with files of other tools."""
 
 import json
 import sys
@@ -36,7 +36,7 @@ class Imports:
         return f"ended with {answer['code']}"
 
     def check(self) -> None:
-        """Each was an answer, in time: `strike` has looked."""
+        """Do nothing: `strike` has checked that each answer came in time."""
 
     def size(self) -> Size:
         return self._size

@@ -1,4 +1,4 @@
-"""The ways in: a broker, the machine on which an exhibition runs, and imports. Each attacks its target, and checks it.
+"""Lanes of attacks: a broker, the machine on which an exhibition runs, and imports. Each checks its own target.
 
 A lane takes `batch` attacks between two checks. `strike` makes one of them; `check` raises BrokenError if the target
 no longer works. If a batch breaks the target, `running.py` starts the lane again and halves the batch.
@@ -15,12 +15,12 @@ from tests.attack.targets import Size
 
 
 class Lane(Protocol):
-    """One way in."""
+    """One way in for attacks."""
 
     batch: int
 
     def strike(self, attack: Attack) -> str:
-        """Make the attack; what became of it, in a word or two."""
+        """Make the attack; return its outcome in a word or two."""
 
     def check(self) -> None: ...
 
@@ -30,7 +30,7 @@ class Lane(Protocol):
 
 
 def lanes(url: str) -> dict[str, tuple[Sequence[Kind], Callable[[], Lane]]]:
-    """The ways in by name, each with the kinds of attacks that it takes; messages come through the broker at `url`."""
+    """Return the kinds of attacks that each lane takes, and its maker, by name; the broker is at `url`."""
     return {
         "broker": (Remote.kinds, lambda: Remote(url)),
         "machine": (Local.kinds, Local),

@@ -1,4 +1,4 @@
-"""Attacks from the machine on which an exhibition runs: frames at its door, files in its project."""
+"""Attacks from the machine on which an exhibition runs: frames to its local bus, files in its project."""
 
 import socket
 from random import Random
@@ -15,9 +15,9 @@ from tests.attack.targets import PATIENCE, BrokenError, Exhibition, save
 
 
 class Local:
-    """Frames at the door of the embedded bus, and files that are saved.
+    """The lane that sends frames to the embedded bus, and saves hostile files.
 
-    A frame has a connection of its own; two of three prove that they have the key. Only one file at a time is
+    Each frame has its own connection; two of three prove that they know the key. Only one file at a time is
     hostile: the previous one is restored first. If the hostile file is accepted, the exhibition is checked on it.
     """
 

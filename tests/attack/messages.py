@@ -6,8 +6,8 @@
                             broker closes it, as RabbitMQ does for headers that streams reject (541, INTERNAL_ERROR)
 
 `sound` has a valid body for each key that has an example: nearly valid input gets furthest. Each message comes from
-one of a list of small generators, so another kind is another function. What they give depends on nothing but the
-seed, and is never much larger than 64 KiB.
+one of a list of small generators, to which a new kind adds a function. The messages depend only on the seed, and are
+never much larger than 64 KiB.
 """
 
 import json
@@ -54,7 +54,7 @@ NAMES = (
     "state", "robot", "speed", "realtime", "follows", "bundle", "command", "now", "by", "what", "motion", "tracks",
     "colours", "duration", "jointNames", "angles", "yaw", "language", "visitor", "sensor", "track", "play", "reason",
 )  # fmt: skip
-"""Words of our own bodies: what is nearly right goes furthest."""
+"""Words of Lumen's own bodies: nearly valid input gets furthest."""
 NUMBERS = (0, -1, 1, 2**31, 2**53 + 1, 2**63, -(2**63) - 1, 10**400, 0.1, 1e308, -1e308, 1e-320)
 SHORT_FIELDS = ("content_type", "content_encoding", "correlation_id", "reply_to", "expiration", "message_id", "type")
 _BITS = {
@@ -65,7 +65,7 @@ _BITS = {
 
 
 class HostileMessage(NamedTuple):
-    """A message as it goes over the wire; `properties` as in the header's frame, from the flags on."""
+    """A message as sent over the wire; `properties` are the bytes of the header's frame from the flags on."""
 
     key: str | bytes
     body: bytes
@@ -95,7 +95,7 @@ class Stranger:
         self._connection: Any = None
 
     def send(self, message: HostileMessage) -> None:
-        """Publish it on `amq.topic`, whatever pika would have said."""
+        """Publish the message on `amq.topic` without pika's checks; if the broker has hung up, connect again."""
         try:
             self._publish(message)
         except AMQPError:
@@ -126,19 +126,19 @@ class Stranger:
 
 
 def message(random: Random, sound: Mapping[str, Any]) -> HostileMessage:
-    """One message under one of these keys, with something wrong in its body, its properties, or both."""
+    """Return a message under a key of `sound`, with an error in its body, its properties, or both."""
     key = random.choice(list(sound))
     body = _spoilt(random, sound[key]) if random.random() < 0.4 else random.choice(BODIES)(random)
     return HostileMessage(key, body, random.choice(PROPERTIES)(random))
 
 
 def frame(random: Random, keys: Sequence[str]) -> bytes:
-    """Bytes for the socket of a local bus."""
+    """Return hostile bytes for the socket of a local bus; some publish under one of the `keys`."""
     return random.choice(FRAMES)(random, keys)
 
 
 def encoded(**fields: bytes | int) -> bytes:
-    """Properties as they go over the wire: short strings, a table for `headers`, and numbers."""
+    """Return properties as sent over the wire: short strings, a table for `headers`, and numbers."""
     flags, parts = 0, list[bytes]()
     for name, bit in _BITS.items():
         if (value := fields.get(name)) is None:
@@ -152,12 +152,12 @@ def encoded(**fields: bytes | int) -> bytes:
 
 
 def header(name: bytes, kind: bytes, value: bytes) -> bytes:
-    """One field of a table of headers."""
+    """Return one field of a table of headers."""
     return struct.pack("B", len(name)) + name + kind + value
 
 
 def nested(depth: int) -> bytes:
-    """A table in a table, so many deep."""
+    """Return a table of headers that is nested `depth` deep."""
     table = b""
     for _ in range(depth):
         table = header(b"a", b"F", struct.pack(">I", len(table)) + table)
@@ -165,12 +165,12 @@ def nested(depth: int) -> bytes:
 
 
 def noise(random: Random) -> bytes:
-    """Bytes that mean nothing."""
+    """Return random bytes, 1 to 199."""
     return random.randbytes(random.randrange(1, 200))
 
 
 def value(random: Random, depth: int = 4) -> Any:
-    """JSON data of any kind; its objects have our own words for keys."""
+    """Return random JSON data, nested at most `depth` deep; the keys of its objects are Lumen's own words."""
     kind = random.randrange(7 if depth else 5)
     match kind:
         case 0:
@@ -190,7 +190,7 @@ def value(random: Random, depth: int = 4) -> Any:
 
 
 def _spoilt(random: Random, sound: Any) -> bytes:
-    """A body that is right, but for a value or a name of it."""
+    """Return the valid body `sound` with an error in one value or name."""
     if not isinstance(sound, dict) or not sound:
         return _data(random)
     body, name = dict(sound), random.choice(list(sound))
@@ -206,7 +206,7 @@ def _data(random: Random) -> bytes:
 
 
 def _order(random: Random) -> bytes:
-    """Nearly a command."""
+    """Return a command with random values, of which some fields may be missing."""
     body = {"type": "motion", "method": random.choice(METHODS), "parameter": value(random), "id": value(random, 0)}
     return json.dumps({key: body[key] for key in body if random.random() < 0.8}).encode()
 
@@ -242,7 +242,7 @@ def _usual(random: Random) -> bytes:
 
 
 def _no_text(random: Random) -> bytes:
-    """Short strings that are no UTF-8."""
+    """Return properties whose short strings are not UTF-8."""
     chosen = random.sample(SHORT_FIELDS, random.randrange(1, len(SHORT_FIELDS)))
     return encoded(**{name: b"\xff\xfe" + random.randbytes(3) for name in chosen if name != "expiration"})
 
@@ -261,7 +261,7 @@ def _answer(random: Random) -> bytes:
 
 
 def _date(random: Random) -> bytes:
-    """Dates that no calendar has."""
+    """Return properties with a date that no calendar has."""
     far = random.choice((2**63, 2**64 - 1, 2**40))
     return encoded(timestamp=far, headers=header(b"at", b"T", struct.pack(">Q", far)))
 
@@ -271,7 +271,7 @@ def _tables(random: Random) -> bytes:
 
 
 def _headers(random: Random) -> bytes:
-    """Fields of all kinds, their names no texts. An infinite number ends in RabbitMQ: it can't read one."""
+    """Return headers of all kinds whose names are not text; RabbitMQ can't read the infinite number among them."""
     kinds = ((b"t", b"\x02"), (b"d", b"\x7f\xef" + b"\xff" * 6), (b"D", b"\xff" + b"\xff" * 4), (b"V", b""))
     long = (b"S", struct.pack(">I", 30_000) + b"\xff" * 30_000)
     fields = (random.choice((*kinds, long)) for _ in range(random.randrange(1, 4)))
@@ -279,7 +279,7 @@ def _headers(random: Random) -> bytes:
 
 
 def _same(random: Random) -> bytes:
-    """The id of a message that was there before."""
+    """Return properties with an id that other messages have, too."""
     return encoded(message_id=str(random.randrange(3)).encode(), delivery_mode=2, priority=random.randrange(256))
 
 
@@ -288,18 +288,18 @@ PROPERTIES: tuple[Callable[[Random], bytes], ...] = (_usual, _no_text, _answer, 
 
 
 def framed(data: bytes) -> bytes:
-    """A frame that holds these bytes."""
+    """Return a frame that holds these bytes."""
     return struct.pack(">I", len(data)) + data
 
 
 def _told(random: Random, keys: Sequence[str]) -> bytes:
-    """A word that is known, with what does not belong to it."""
+    """Return a frame with a word that the bus knows, and random values after it."""
     words = ("publish", "subscribe", "unsubscribe", "mark", "proof", "prove", "message", "subscribed", "marked")
     return framed(json.dumps([random.choice(words), *(value(random, 2) for _ in range(random.randrange(7)))]).encode())
 
 
 def _published(random: Random, keys: Sequence[str]) -> bytes:
-    """A message that may be published, but for a word."""
+    """Return a frame that publishes a message, with one wrong field."""
     words = ["publish", random.choice(keys), "lumen.attack.answer", "1", random.choice((None, 1.0))]
     words[random.randrange(len(words))] = value(random, 1)
     return framed(json.dumps(words).encode()[:-1] + b"," + random.choice(BODIES)(random) + b"]")
@@ -313,7 +313,7 @@ def _digited(random: Random, keys: Sequence[str]) -> bytes:
 
 
 def _length(random: Random, keys: Sequence[str]) -> bytes:
-    """A length that is a lie."""
+    """Return bytes whose length field is wrong."""
     return struct.pack(">I", random.choice((0, 1, 2**20 + 4_097, 2**32 - 1))) + noise(random)
 
 

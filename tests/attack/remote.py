@@ -6,13 +6,14 @@ from tests.attack.sound import sound
 from tests.attack.targets import BrokenError, Exhibition
 
 STREAM = ".persistence.journal"
-"""How the keys of streams end."""
+"""The end of the keys of streams."""
 
 
 class Remote:
-    """Messages through RabbitMQ, which has taken all of a batch before it is checked.
+    """The lane that sends messages through RabbitMQ, which has processed all of a batch before a check.
 
-    A stream can't hold every header, and RabbitMQ hangs up on who sends such a one: what goes there is waited for.
+    A stream can't hold every header, and RabbitMQ closes the connection that sends such a header. So this lane waits
+    until each message to a stream is processed.
     """
 
     kinds = (Kind.MESSAGE,)

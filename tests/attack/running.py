@@ -41,7 +41,7 @@ class Survey:
 
     @property
     def growth(self) -> Size:
-        """From the largest of the first sizes to the smallest of the last ones: what comes and goes is no growth."""
+        """Return the growth from the largest of the first sizes to the smallest of the last ones; peaks don't count."""
         if not self.sizes:
             return Size(0.0, 0, 0)
         settled = max(SETTLED, len(self.sizes) // 4)
@@ -100,7 +100,7 @@ def struck(target: Lane, batch: list[int]) -> list[str]:
 
 
 def narrowed(batch: list[int], text: str, begin: Callable[[], Lane]) -> Trouble:
-    """The half of a batch that breaks a new target, its half, and so on; all of it where neither does alone."""
+    """Return the fault of the smallest part of the batch that still breaks a new target, found by halving the batch."""
     half = len(batch) // 2
     for part in (batch[:half], batch[half:]):
         if part and half and (again := broken_by(part, begin)):

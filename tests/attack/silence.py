@@ -181,9 +181,9 @@ def attack_imports(
     endings: Collection[str] = frozenset(CHANGERS),
     most: int | None = None,
 ) -> Report:
-    """Import the changed files, at most so many; the number of a change determines it.
+    """Import randomly changed files, at most `most`; the number of a change determines it.
 
-    A number counts only if there is something to change, in a file that can be imported.
+    A number counts only if the change alters a file that can be imported.
     """
     found, importer = samples(folders), Importer()
     before = cache(lambda at: importer.outcome(found[at].ending, found[at].text))

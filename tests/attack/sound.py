@@ -1,4 +1,4 @@
-"""The keys of the shipped project, and bodies that are right there."""
+"""Valid bodies for the keys of the shipped project."""
 
 from typing import Any
 
@@ -15,7 +15,7 @@ OTHERS = (COMMAND, STATUS, SPOKEN, FLUSH_MARK, "lumen.operator.answer", "lumen.n
 
 
 def sound() -> dict[str, Any]:
-    """A body that is right for every key of the shipped project, in and out, and keys that no route has."""
+    """Return a valid body for each key of the shipped project, in either direction, and one for each of `OTHERS`."""
     project, _ = check_files(ROOT, read_files(ROOT))
     assert project
     shown = {route.key_for(project.robot): _example(project, route.schema) for route in project.routes.values()}

@@ -62,7 +62,7 @@ class Exhibition:
         self.bus.subscribe(SPOKEN, self._spoken)
 
     def check(self) -> None:
-        """It ticks, a stop is obeyed, a text is spoken and journaled, nothing of ours failed; it may move again."""
+        """Raise BrokenError unless it obeys a stop, moves again, speaks and journals a text, and no part failed."""
         for ask_one in (self._rests, self._speaks, self._reloads):
             self.lives()
             try:
@@ -148,7 +148,7 @@ class Exhibition:
 
 
 def order(kind: str, method: str, **parameter: str) -> dict[str, Any]:
-    """A command as any module sends it."""
+    """Return a command as a module sends it."""
     return {"type": kind, "method": method, "parameter": parameter}
 
 
@@ -158,6 +158,6 @@ def wanted(answer: object, right: str, what: str) -> None:
 
 
 def save(path: Path, content: bytes) -> None:
-    """As an editor does."""
+    """Write the file, in new folders if necessary."""
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_bytes(content)

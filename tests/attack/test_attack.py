@@ -25,7 +25,7 @@ def test_what_grows_is_told() -> None:
 
 
 class Fragile:
-    """Breaks where 5 and 9 have been there."""
+    """A lane that breaks after attacks 5 and 9."""
 
     batch = 100
 

@@ -1,4 +1,4 @@
-"""Random hostile files: whatever is saved or imported is an answer, and never a traceback."""
+"""Random hostile files: saving or importing any of them gives an answer, never a traceback."""
 
 from pathlib import Path
 from random import Random

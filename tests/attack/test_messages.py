@@ -1,4 +1,4 @@
-"""Hostile messages against a running exhibition: it ticks, it speaks, and it stops, whatever came."""
+"""Hostile messages against a running exhibition: it still ticks, speaks and stops."""
 
 import json
 from collections.abc import Iterator
@@ -25,7 +25,7 @@ COUNT = 400
 
 @pytest.fixture
 def exhibition(broker: RabbitMQ) -> Iterator[Exhibition]:
-    """The whole exhibition on a broker, as fast as it can."""
+    """An exhibition on a broker that runs as fast as possible."""
     exhibit = project()
     options = {"operated": False}
     whole = Exhibition(Plan(exhibit, set_up("recording", exhibit, "max"), broker.url, options=options))

@@ -7,5 +7,5 @@ import pytest
 
 @pytest.fixture
 def address(tmp_path: Path) -> str:
-    """The address of a bus that this test alone has: one with a fixed name lives on in whatever is not closed."""
+    """The address of a bus for this test alone: a shared name would connect it to buses that are still open."""
     return f"memory://{tmp_path}"

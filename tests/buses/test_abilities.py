@@ -36,7 +36,7 @@ ABILITIES = (
 
 
 class PlainBus(Bus):
-    """A bus of one's own, with the methods that each has and no more."""
+    """A bus of another package, with the required methods only."""
 
     def __init__(self) -> None:
         self.sent: list[Outgoing] = []

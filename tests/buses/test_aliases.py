@@ -1,4 +1,4 @@
-"""Second names of keys: a module of 2015 connects to the only robot, and no subscriber gets a message twice."""
+"""Aliases of keys: a module of 2015 reaches the only robot, and no subscriber gets a message twice."""
 
 from collections.abc import Iterator
 from dataclasses import replace

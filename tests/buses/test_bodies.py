@@ -71,7 +71,7 @@ def test_a_number_that_is_no_finite_float_is_never_sent(number: float, inside: A
 
 
 class Huge(int):
-    """A relative of a number."""
+    """A subclass of a number."""
 
 
 def test_a_relative_of_a_number_has_the_same_bounds() -> None:

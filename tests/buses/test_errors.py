@@ -27,7 +27,7 @@ from tests.waiting import HANG, until
 
 
 class World(NamedTuple):
-    """A broker, a local bus in a folder, and where neither is."""
+    """A broker, the local bus of a folder, and a port at which no program listens."""
 
     broker: RabbitMQ
     served: LocalBusServer

@@ -20,7 +20,7 @@ from tests.waiting import HANG, Collector, finished, until
 
 
 class Opened:
-    """A bus that is served."""
+    """An embedded bus with a server in a folder."""
 
     def __init__(self, folder: Path) -> None:
         self.bus = connect("memory://")
@@ -183,7 +183,7 @@ def test_who_does_not_read_slows_nobody_and_fills_no_memory(opened: Opened, monk
 
 
 class Narrow:
-    """A wire that accepts `room` bytes, and then no more."""
+    """A socket that accepts `room` bytes, and then no more."""
 
     def __init__(self, room: int) -> None:
         self.room, self.taken = room, b""

@@ -42,7 +42,7 @@ def program(name: str, folder: Path) -> tuple[str, ...]:
 
 @pytest.fixture
 def bus(broker: RabbitMQ) -> Iterator[Bus]:
-    """An exhibition's own handle, on which bodies are checked."""
+    """A bus that checks bodies, as an exhibition's does."""
     bus = connect(broker.url, project())
     yield bus
     bus.close()

@@ -10,7 +10,7 @@ WORDS = st.lists(st.sampled_from(["a", "b", "", "*", "#"]), max_size=7).map(".".
 
 
 def plainly(pattern: list[str], key: list[str]) -> bool:
-    """The definition, word by word, without a thought of speed."""
+    """Return whether a key matches, by the definition, word by word, without regard to speed."""
     if not pattern:
         return not key
     if pattern[0] == "#":

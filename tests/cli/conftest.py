@@ -17,7 +17,7 @@ __all__ = ["copy", "project"]
 
 
 class Terminal(io.StringIO):
-    """A person who types this."""
+    """Standard input as a terminal on which a person types this text."""
 
     def isatty(self) -> bool:
         return True
@@ -35,7 +35,7 @@ def bus(copy: Path) -> Iterator[Bus]:
 
 @pytest.fixture
 def exhibition(copy: Path, bus: Bus) -> Iterator[Exhibition]:
-    """One that runs in a thread."""
+    """An exhibition that runs in a thread."""
     ending = threading.Event()
     with lumen.open(copy, bus=bus) as one:
 

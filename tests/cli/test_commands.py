@@ -46,7 +46,7 @@ def test_a_project_like_another_is_whole_and_clean(
 
 
 def test_rows_of_routes_that_lumen_new_wrote_are_never_unused(tmp_path: Path) -> None:
-    """The behaviour that is left hears none of their events."""
+    """The remaining behaviour handles none of their events."""
     folder = tmp_path / "mine"
     assert main(["new", str(folder)]) == 0
     shutil.rmtree(folder / "behaviors")

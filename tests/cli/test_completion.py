@@ -87,7 +87,7 @@ def path(tmp_path: Path) -> str:
     ids=["bash", "zsh"],
 )
 def test_a_shell_completes_what_is_typed(shell: list[str], begin: str, path: str, tmp_path: Path) -> None:
-    """On a terminal of its own: the verb, the option, and the story are each written by one press of Tab."""
+    """On a pseudo-terminal, one press of Tab each completes the verb, the option and the story."""
     shell = [str(program(shell[0])), *shell[1:]]
     master, slave = pty.openpty()
     environment = {**LIBRARIES, "PATH": path, "HOME": str(tmp_path), "TERM": "dumb", "PS1": "$ "}

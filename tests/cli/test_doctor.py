@@ -1,4 +1,4 @@
-"""`lumen doctor`: what it concludes from what comes on the bus."""
+"""The findings of `lumen doctor` about messages on the bus."""
 
 from datetime import UTC, datetime, timedelta
 from unittest.mock import Mock

@@ -1,4 +1,4 @@
-"""`lumen language`: a place for a new language wherever one is, and what is missing."""
+"""`lumen language` adds a place for a new language beside each text, and lists missing texts."""
 
 import json
 import re

@@ -22,7 +22,7 @@ def copy(copy: Path) -> Path:
 
 @pytest.fixture
 def without(copy: Path) -> None:
-    """Takes it out again."""
+    """Removes the language model from the copy."""
     file = copy / "lumen.yaml"
     file.write_text(file.read_text("utf-8").replace(ANSWERS, ""), "utf-8")
 

@@ -12,7 +12,7 @@ JUDGING = [["lint"], ["lint", "--fix"], ["test"], ["test", "visitor"], ["diff", 
 
 @pytest.fixture
 def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """An empty folder, in which one stands."""
+    """An empty folder, the current directory."""
     monkeypatch.chdir(tmp_path)
     return tmp_path
 

@@ -1,4 +1,4 @@
-"""`lumen plot`: what is drawn, as values; and that it is drawn."""
+"""`lumen plot`: the values in its drawings, and an image that is not blank."""
 
 import io
 import math
