@@ -1,3 +1,4 @@
+// @ts-check
 // An alarm where a person looks elsewhere: in the window's title and icon, and as a sound if the person wants one.
 import { kept, t } from "./ui.js";
 
@@ -5,6 +6,7 @@ const TONES = [880, 660, 880],
   TONE = 0.18; // [Hz], [s] each
 const HEARD = "lumen.alarms"; // those that this window has sounded for, on this page or the one before
 
+/** @param {string[]} now */
 function heard(now) {
   try {
     const before = new Set((sessionStorage.getItem(HEARD) ?? "").split("\n"));
@@ -27,7 +29,11 @@ function sound() {
   });
 }
 
-/** Show alarms, `[robot, kind, when]` each, before the title; a new one is heard. While they are not known: null. */
+/**
+ * Show alarms, `[robot, kind, when]` each, before the title; a new one is heard. While they are not known: null.
+ * @param {[robot: string, kind: string, when: string][] | null} alarms
+ * @param {string} title
+ */
 function show(alarms, title) {
   const unheard = alarms !== null && !heard(alarms.map((one) => one.join(" ")));
   if (unheard && kept("lumen.sound") === "on") sound();
@@ -35,7 +41,7 @@ function show(alarms, title) {
   document.title = first ? `⚠ ${first[0]}: ${t(`alarm.${first[1]}`)} · ${title}` : title;
   const icon = document.querySelector("link[rel=icon]"),
     wanted = `/pages/look/icon${first ? "-alarm" : ""}.svg`;
-  if (icon.getAttribute("href") !== wanted) icon.setAttribute("href", wanted);
+  if (icon && icon.getAttribute("href") !== wanted) icon.setAttribute("href", wanted);
 }
 
 export const alarm = { show, sound };

@@ -1,8 +1,12 @@
+// @ts-check
 // Reads server-sent events by fetch, so that a silent cut is noticed too.
 const SILENCE = 3000; // [ms]: the console says something each second
 
 /**
  * Tell `take` of each block of a stream until it ends, also if it is silent; the error has the `status` of a refusal.
+ * @param {string} path
+ * @param {(block: string) => void} take
+ * @param {AbortSignal} signal
  */
 export async function blocks(path, take, signal) {
   const mine = new AbortController(),
@@ -21,7 +25,7 @@ export async function blocks(path, take, signal) {
       cache: "no-store",
       headers: { Accept: "text/event-stream" },
     });
-    if (!answer.ok) throw Object.assign(new Error(`${answer.status}`), { status: answer.status });
+    if (!answer.ok || !answer.body) throw Object.assign(new Error(`${answer.status}`), { status: answer.status });
     const reader = answer.body.pipeThrough(new TextDecoderStream()).getReader();
     let text = "";
     for (;;) {
@@ -41,7 +45,11 @@ export async function blocks(path, take, signal) {
   }
 }
 
-/** The kind and the data of a block; null for a comment. */
+/**
+ * The kind and the data of a block; null for a comment.
+ * @param {string} block
+ * @returns {[kind: string, data: any] | null}
+ */
 export function parsed(block) {
   let kind = "message",
     data = "";

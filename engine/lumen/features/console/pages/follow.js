@@ -1,15 +1,22 @@
+// @ts-check
 // Follows a stream of server-sent events, over one connection for all pages of this browser where it can share.
 import { blocks } from "./blocks.js";
 
 const SILENCE = 4000,
   HERE = 5000; // [ms] without a word from what is shared; between two words of ours
+/** @type {Map<string, { lost: () => void, take: (block: string) => void }>} */
 const followed = new Map();
+/** @type {SharedWorker | null} */
 let worker = null,
   shares = typeof SharedWorker !== "undefined";
 
 /**
  * Tell `take` of each block; `lost` is called once it has ended. Those with the same `who` share. What is returned
  * leaves it.
+ * @param {string} path
+ * @param {string | null} who
+ * @param {(block: string) => void} take
+ * @param {() => void} lost
  */
 export function follow(path, who, take, lost) {
   const id = `${who} ${path}`,
@@ -35,7 +42,7 @@ export function follow(path, who, take, lost) {
   };
   const mine = {
     lost: over,
-    take: (block) => {
+    take: (/** @type {string} */ block) => {
       alive();
       take(block);
     },
@@ -56,9 +63,12 @@ export function follow(path, who, take, lost) {
   };
 }
 
-/** The way to what is shared; null where this browser has no such thing. */
+/**
+ * The way to what is shared; null where this browser has no such thing.
+ * @returns {MessagePort | null}
+ */
 function shared() {
-  if (worker || !shares) return worker?.port;
+  if (worker || !shares) return worker?.port ?? null;
   try {
     worker = new SharedWorker("/pages/shared.js", { type: "module", name: "lumen" });
   } catch {

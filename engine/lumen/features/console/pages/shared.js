@@ -1,15 +1,24 @@
+// @ts-check
 // Runs once for all pages of a browser, which has six connections for one server: each stream is read here, once.
+/** @import { SharedWorkerScope } from "./types" */
 import { blocks } from "./blocks.js";
 
 const GONE = 60000; // [ms] after which a page that says nothing any more was closed without a word
-const streams = new Map(),
-  heard = new Map(); // who follows, by the stream's id; when a page was heard last
+/** @type {Map<string, { pages: Set<MessagePort>, ending: AbortController }>} */
+const streams = new Map(); // which pages follow, by the stream's id
+/** @type {Map<MessagePort, number>} */
+const heard = new Map(); // when a page was heard last
 
+/**
+ * @param {MessagePort} page
+ * @param {string} id
+ * @param {string} path
+ */
 function join(page, id, path) {
   let one = streams.get(id);
   if (!one) {
     const made = (one = { pages: new Set(), ending: new AbortController() });
-    const tell = (what) => {
+    const tell = (/** @type {{ block: string } | { lost: true }} */ what) => {
       for (const each of made.pages) each.postMessage({ id, ...what });
     };
     streams.set(id, made);
@@ -23,6 +32,10 @@ function join(page, id, path) {
   one.pages.add(page);
 }
 
+/**
+ * @param {MessagePort} page
+ * @param {string} id
+ */
 function leave(page, id) {
   const one = streams.get(id);
   if (!one?.pages.delete(page) || one.pages.size) return;
@@ -30,7 +43,8 @@ function leave(page, id) {
   one.ending.abort();
 }
 
-onconnect = ({ ports: [page] }) => {
+const scope = /** @type {SharedWorkerScope} */ (/** @type {unknown} */ (globalThis));
+scope.onconnect = (/** @type {MessageEvent} */ { ports: [page] }) => {
   page.onmessage = ({ data: { follow, leave: left, id } }) => {
     heard.set(page, Date.now());
     if (follow) join(page, id, follow);

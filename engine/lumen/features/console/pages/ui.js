@@ -1,35 +1,53 @@
+// @ts-check
 // What all pages build with: elements from data (text is never markup), texts, and state that lives as long as the
 // page.
+/** @import { Texts, Entry } from "./types" */
 import { html, render, useEffect, useLayoutEffect, useRef, useState } from "./vendor/htm-preact.js";
 import en from "./texts/en.js";
 import id from "./texts/id.js";
 
 export { html, render, useEffect, useLayoutEffect, useRef, useState };
 
+/** @type {Record<string, Record<string, string>>} */
 const TEXTS = { en, id };
+/** @type {Set<(value: {}) => void>} */
 const redraws = new Set();
 
 export const language = () => document.documentElement.lang;
+/** @type {Record<string, string>} */
 export const LANGUAGES = { en: "English", id: "Bahasa Indonesia" };
 
 /**
  * The text of that name in the page's language; {name} is filled in, and {count|robot|robots} by whether the count
  * is 1.
+ * @param {string} name
+ * @param {Record<string, any>} [values]
  */
 export function t(name, values = {}) {
-  const text = TEXTS[language()]?.[name] ?? en[name] ?? name;
+  const text = TEXTS[language()]?.[name] ?? TEXTS.en[name] ?? name;
   return text.replace(/\{(\w+)(?:\|([^|}]*)\|([^}]*))?\}/g, (all, key, one, many) =>
     one === undefined ? (values[key] ?? all) : `${values[key]}` === "1" ? one : many,
   );
 }
 
-/** A map of texts by language, as YAML writes them: the page's, else the first. */
+/**
+ * A map of texts by language, as YAML writes them: the page's, else the first.
+ * @param {Texts | null | undefined} texts
+ */
 export const inLanguage = (texts) =>
   (typeof texts === "object" && texts ? (texts[language()] ?? Object.values(texts)[0]) : texts) ?? "";
 
-/** The line about an entry of the journal, in the page's language where there is one. */
+/**
+ * The line about an entry of the journal, in the page's language where there is one.
+ * @param {Entry} entry
+ */
 export const lineOf = (entry) => entry.texts?.[language()] ?? entry.text;
 
+/**
+ * Keep a setting in this browser; null forgets it.
+ * @param {string} key
+ * @param {string | null} value
+ */
 export function keep(key, value) {
   try {
     value === null ? localStorage.removeItem(key) : localStorage.setItem(key, value);
@@ -37,6 +55,7 @@ export function keep(key, value) {
     /* a private window */
   }
 }
+/** @param {string} key */
 export function kept(key) {
   try {
     return localStorage.getItem(key);
@@ -45,6 +64,7 @@ export function kept(key) {
   }
 }
 
+/** @param {string} code */
 export function speak(code) {
   document.documentElement.lang = code;
   keep("lumen.language", code);
@@ -70,11 +90,17 @@ export function useRedraw() {
   }, []);
 }
 
+/** @param {number} digits */
 const number = (digits) => ({ minimumFractionDigits: digits, maximumFractionDigits: digits });
+/** @param {number | string} value */
 export const fixed = (value, digits = 0) => Number(value).toLocaleString(language(), number(digits));
+/** @param {number} value */
 export const percent = (value) => `${fixed(value)}%`;
 
-/** What people call a language: `en` is English, or Inggris. */
+/**
+ * What people call a language: `en` is English, or Inggris.
+ * @param {string} code
+ */
 export function languageName(code) {
   try {
     return new Intl.DisplayNames([language()], { type: "language" }).of(code) ?? code;
@@ -83,10 +109,16 @@ export function languageName(code) {
   }
 }
 
-/** A full hour: 09:00, or 09.00. */
+/**
+ * A full hour: 09:00, or 09.00.
+ * @param {number} hour
+ */
 export const fullHour = (hour) => `${String(hour).padStart(2, "0")}${language() === "id" ? "." : ":"}00`;
 
-/** 14:03:20 where the console is looked at. */
+/**
+ * 14:03:20 where the console is looked at.
+ * @param {string | null | undefined} iso
+ */
 export const clock = (iso, seconds = true) =>
   iso
     ? new Date(iso).toLocaleTimeString(language() === "id" ? "id-ID" : "en-GB", {
@@ -96,10 +128,13 @@ export const clock = (iso, seconds = true) =>
       })
     : "";
 
-/** 0:07, 12:31 or 3:04:05 of seconds. */
+/**
+ * 0:07, 12:31 or 3:04:05 of seconds.
+ * @param {number} seconds
+ */
 export function span(seconds) {
   const whole = Math.max(0, Math.floor(seconds)),
-    pad = (n) => String(n).padStart(2, "0");
+    pad = (/** @type {number} */ n) => String(n).padStart(2, "0");
   const [h, m, s] = [Math.floor(whole / 3600), Math.floor(whole / 60) % 60, whole % 60];
   return h ? `${h}:${pad(m)}:${pad(s)}` : `${m}:${pad(s)}`;
 }
@@ -112,10 +147,12 @@ export function useSeconds() {
     return () => clearInterval(timer);
   }, []);
 }
+/** @param {{ at: string | null | undefined, now?: () => number }} props */
 export function Since({ at, now = Date.now }) {
   useSeconds();
   return at ? html`<time datetime=${at}>${span((now() - Date.parse(at)) / 1000)}</time>` : null;
 }
+/** @param {{ at: string, now?: () => number }} props */
 export function Until({ at, now = Date.now }) {
   useSeconds();
   return html`<time datetime=${at}>${span((Date.parse(at) - now()) / 1000 + 0.5)}</time>`;
@@ -124,30 +161,52 @@ export function Until({ at, now = Date.now }) {
 let ids = 0;
 export const useId = () => useRef(`e${++ids}`).current;
 
-/** A part of the page with a heading of its own. */
+/**
+ * The text of the field in which something was typed or chosen.
+ * @param {Event} event
+ */
+export const valueOf = ({ target }) => /** @type {HTMLInputElement | HTMLSelectElement} */ (target).value;
+
+/**
+ * Whether the box that was clicked is ticked now.
+ * @param {Event} event
+ */
+export const isTicked = ({ target }) => /** @type {HTMLInputElement} */ (target).checked;
+
+/**
+ * A part of the page with a heading of its own.
+ * @param {{ title: string, kind?: string, aside?: any, children?: any }} props
+ */
 export function Part({ title, kind = "", aside = null, children }) {
   const heading = useId();
   return html`<section class="part ${kind}" aria-labelledby=${heading}>
     <div class="part-head"><h2 id=${heading}>${title}</h2>${aside}</div>${children}</section>`;
 }
 
-/** Controls that can be used only `when` that is so; else they are grey. */
+/**
+ * Controls that can be used only `when` that is so; else they are grey.
+ * @param {{ when: boolean, children?: any }} props
+ */
 export const Usable = ({ when, children }) => html`<fieldset class="bare" disabled=${!when}>${children}</fieldset>`;
 
 /**
  * A dialog that is open as long as it is drawn; Escape and the button close it. Not modal: Rest stays in reach above
  * it.
+ * @param {{ title: string, onClose: () => void, children?: any, actions?: any }} props
  */
 export function Dialog({ title, onClose, children, actions = null }) {
-  const box = useRef(null),
+  const box = useRef(/** @type {HTMLDialogElement | null} */ (null)),
     heading = useId();
   useEffect(() => {
-    const before = document.activeElement;
-    (box.current.querySelector("[autofocus]") ?? box.current).focus();
-    return () => before?.focus?.();
+    const before = document.activeElement,
+      field = /** @type {HTMLElement | null | undefined} */ (box.current?.querySelector("[autofocus]"));
+    (field ?? box.current)?.focus();
+    return () => {
+      if (before instanceof HTMLElement) before.focus();
+    };
   }, []);
   useEffect(() => {
-    const typed = (event) => {
+    const typed = (/** @type {KeyboardEvent} */ event) => {
       if (event.key === "Escape" && !event.repeat) onClose();
     };
     addEventListener("keydown", typed);
@@ -159,5 +218,9 @@ export function Dialog({ title, onClose, children, actions = null }) {
         onClick=${onClose}>${t(actions ? "cancel" : "close")}</button></div></dialog>`;
 }
 
-/** `behaviors/tour.yaml:205`, short enough to stand beside something. */
+/**
+ * `behaviors/tour.yaml:205`, short enough to stand beside something.
+ * @param {string | null | undefined} file
+ * @param {number | null | undefined} line
+ */
 export const place = (file, line) => (file ? `${file}${line ? `:${line}` : ""}` : "");

@@ -1,0 +1,2 @@
+// The types of three.js, for authors of pages; they are not installed.
+export * from "three";
