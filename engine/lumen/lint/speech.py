@@ -47,9 +47,7 @@ MAX_COMPARED_ROWS = 200
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report texts that are missing in a language or empty, and languages that lumen.yaml does not name or nothing
-    uses.
-    """
+    """Report missing and empty texts, languages that lumen.yaml does not name, and languages without texts."""
     if draft.settings is None or draft.main is None or not draft.settings.languages:
         return
     if any(path[:1] == ("languages",) for path in draft.main.pruned):

@@ -62,6 +62,7 @@ class StateNode:
         """The history states among its children, which `children` does not have."""
         self.initial: tuple[StateNode, ...] = ()
         self.transitions: tuple[CompiledTransition, ...] = ()
+        """Its transitions, in the order of evaluation."""
         self.afters: tuple[tuple[str, int], ...] = ()
         """The events of its `after` transitions with constant delays, each with its delay [ns]."""
         self.computed: Mapping[str, ComputedAfter] = {}
@@ -165,13 +166,18 @@ class Chart:
         self._guard_rows()
 
     def _guard_rows(self) -> None:
-        """Set the guards of all rows of `hears`, which depend on the other rows of the same state."""
+        """Set the guards of all rows of `hears`, which depend on the other rows of the same state, and sort them.
+
+        A state with rows evaluates them after its transitions of `on`, but before one on any event (`*`).
+        """
         for node in self.nodes.values():
             rows = {t.definition.hears.number: t for t in node.transitions if t.definition.hears}
             if rows:
                 block = RowBlock(self.definition, {number: row.guard for number, row in rows.items()})
                 for number, row in rows.items():
                     row.rows, (row.guard, row.late) = block, block.guards(number)
+                order = sorted(node.transitions, key=lambda t: 2 if t.definition.event == "*" else t.rows is not None)
+                node.transitions = tuple(order)
 
     def _connect(self, node: StateNode) -> None:
         assert node.state is not None  # only the document lacks a state, and it is not among the nodes

@@ -1,6 +1,6 @@
 """The effect of a microstep, computed once for each configuration and set of transitions, then cached."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from collections.abc import Set as AbstractSet
 from typing import Any, NamedTuple, TypeAlias
 
@@ -99,7 +99,7 @@ class Configuration:
             return NO_CANDIDATES
         groups: list[Group] = []
         for leaf in self.leaves:
-            found = [t for node in (leaf, *leaf.ancestors) for t in in_order(node.transitions) if wanted(t)]
+            found = [t for node in (leaf, *leaf.ancestors) for t in node.transitions if wanted(t)]
             if found:
                 groups.append(tuple(found))
         if not any(t.rows for group in groups for t in group):
@@ -184,13 +184,6 @@ class MicrostepPlanner:
         """Return an equal stored tuple, else store this one: sharing saves memory in charts with many states."""
         make_room(self._names)
         return self._names.setdefault(names, names)
-
-
-def in_order(transitions: tuple[CompiledTransition, ...]) -> Sequence[CompiledTransition]:
-    """Return the transitions of a state in the order of evaluation: `hears` rows after `heard`, but before `*`."""
-    if not any(t.rows for t in transitions):
-        return transitions
-    return sorted(transitions, key=lambda t: 2 if t.definition.event == "*" else t.rows is not None)
 
 
 def make_room(cache: dict[Any, Any]) -> None:

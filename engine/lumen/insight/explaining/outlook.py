@@ -14,7 +14,7 @@ from lumen.language.machines import MachineDefinition, Transition
 from lumen.statechart.chart import CompiledTransition
 from lumen.statechart.command_ids import outer_id
 from lumen.statechart.compiled_machine import compiled
-from lumen.statechart.plans import Configuration, in_order
+from lumen.statechart.plans import Configuration
 from lumen.statechart.values import Snapshot, Timer
 
 
@@ -102,7 +102,7 @@ def _ranked(
     rivals: dict[CompiledTransition, CompiledTransition | None] = {}
     for leaf in configuration.leaves:
         sure: list[CompiledTransition] = []
-        found = [t for node in (leaf, *leaf.ancestors) for t in in_order(node.transitions)]
+        found = [t for node in (leaf, *leaf.ancestors) for t in node.transitions]
         for transition in sorted(found, key=lambda t: t.is_otherwise):
             rival = next((one for one in sure if _covers(one.definition, transition.definition)), None)
             if rivals.get(transition, rival) is not None or transition not in rivals:

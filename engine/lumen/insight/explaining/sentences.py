@@ -7,7 +7,6 @@ from lumen.expressions import ExpressionError, Scope, compile_expression, compil
 from lumen.language.machines import Hears, MachineDefinition, State, Transition
 from lumen.statechart.chart import CompiledGuard, CompiledTransition, StateNode
 from lumen.statechart.compiled_machine import compiled
-from lumen.statechart.plans import in_order
 from lumen.statechart.state_changes import names_of
 from lumen.talk.hearing import HEARD, Dropped, hearing_of
 
@@ -155,7 +154,7 @@ class _Sentence:
         self.active = names_of(frozenset(self.line))
 
     def explained(self) -> ExplainedSentence:
-        waiting = [t for node in self.line for t in in_order(node.transitions) if t.matches(HEARD)]
+        waiting = [t for node in self.line for t in node.transitions if t.matches(HEARD)]
         taken = self.first(waiting)
         return ExplainedSentence(tuple(self.row(one, one is taken) for one in waiting))
 
