@@ -1,10 +1,24 @@
 """The code of the console's pages, checked by TypeScript: types are comments of it, and nothing is compiled."""
 
+import json
 from pathlib import Path
 
 from tests import ROOT
+from tests.features.console.conftest import Hosted
+from tests.features.console.pages import Browser
+from tests.features.console.test_page_sources import PAGES, sources
 from tests.fetched import fetched
 from tests.guarded import run_guarded
+from tests.waiting import until
+
+ANSWERS = {
+    "Now": "/api/now",
+    "Day": "/api/day?robot=NAO",
+    "Entries": "/api/entries?robot=NAO&from=0&to=1000",
+    "Chart": "/api/chart?robot=NAO",
+    "Files": "/api/files?robot=NAO",
+}
+"""Types of `types.d.ts`, and the paths whose answers they describe."""
 
 
 def faults(config: Path) -> list[str]:
@@ -16,5 +30,36 @@ def faults(config: Path) -> list[str]:
     return done.stdout.splitlines()
 
 
+def faults_of(code: str, folder: Path) -> list[str]:
+    """The faults of a module beside the pages."""
+    (folder / "module.ts").write_text(code, encoding="utf-8")
+    config = {"extends": str(ROOT / "tsconfig.json"), "include": ["module.ts"], "exclude": []}
+    (folder / "tsconfig.json").write_text(json.dumps(config), encoding="utf-8")
+    return faults(folder / "tsconfig.json")
+
+
 def test_the_types_of_the_pages_agree() -> None:
     assert faults(ROOT / "tsconfig.json") == []
+
+
+def test_each_module_is_checked() -> None:
+    unchecked = [
+        file.name for file in sources(".js") if not file.read_text(encoding="utf-8").startswith("// @ts-check\n")
+    ]
+    assert unchecked == []
+
+
+def test_the_types_describe_what_the_server_sends(hosted: Hosted, browser: Browser, tmp_path: Path) -> None:
+    """A key that the types lack is a fault too, since each answer is written as a literal."""
+    hosted.send("heard", {"result": "hello"})
+    until(lambda: browser.robots[0].get("visitor_said"))
+    code = f"import type {{ {', '.join(ANSWERS)} }} from {json.dumps(str(PAGES / 'types'))};\n"
+    for kind, path in ANSWERS.items():
+        code += f"export const of{kind}: {kind} = {json.dumps(browser.get(path).data)};\n"
+    assert faults_of(code, tmp_path) == []
+
+
+def test_a_wrong_key_is_found(tmp_path: Path) -> None:
+    code = f'import {{ robotOf }} from {json.dumps(str(PAGES / "live.js"))};\nexport const name = robotOf("NAO")?.nmae;\n'
+    (found,) = faults_of(code, tmp_path)
+    assert "Property 'nmae' does not exist on type 'Robot'" in found

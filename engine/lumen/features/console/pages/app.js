@@ -1,13 +1,15 @@
+// @ts-check
 // The pages: which one the address means, and what stands above each.
 import { Told } from "./commands.js";
 import { Head } from "./head.js";
 import { connect, live } from "./live.js";
 import { NowPage } from "./now/page.js";
 import { SignIn, askPin } from "./session.js";
-import { html, render, t, useEffect, useRedraw, useState } from "./ui.js";
+import { byId, html, render, t, useEffect, useRedraw, useState } from "./ui.js";
 import { Wall } from "./wall.js";
 
 // Loaded when they are looked at: what comes first is Rest and what happens now.
+/** @type {Record<string, () => Promise<{ default: (props: { name: string }) => any }>>} */
 const LATER = {
   day: () => import("./day/page.js"),
   files: () => import("./files/page.js"),
@@ -19,8 +21,9 @@ const LATER = {
 const FLEET = location.pathname === "/fleet"; // many houses: of no robot here
 if (FLEET) lumen.page = "fleet";
 
+/** @param {{ page: string, name?: string }} props */
 function Later({ page, name }) {
-  const [Page, set] = useState(null),
+  const [Page, set] = useState(/** @type {Function | null} */ (null)),
     [failed, fail] = useState(false);
   useEffect(() => {
     LATER[page]().then(
@@ -51,11 +54,11 @@ function Main() {
   return lumen.page in LATER ? html`<${Later} page=${lumen.page} name=${name} />` : html`<${NowPage} name=${name} />`;
 }
 
-document.getElementById("skip").textContent = t("skip");
+byId("skip").textContent = t("skip");
 document.body.dataset.page = lumen.page || (lumen.robot ? "now" : "home");
 if (lumen.page !== "subtitles") {
-  render(html`<${Head} />`, document.getElementById("head"));
-  render(html`<${Told} /><${SignIn} />`, document.getElementById("told"));
+  render(html`<${Head} />`, byId("head"));
+  render(html`<${Told} /><${SignIn} />`, byId("told"));
 }
-render(html`<${Main} />`, document.getElementById("main"));
+render(html`<${Main} />`, byId("main"));
 connect();

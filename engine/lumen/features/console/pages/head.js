@@ -1,4 +1,6 @@
+// @ts-check
 // The header of each page: which robot, whether the page is live, alarms, the other pages, and the settings.
+/** @import { Robot } from "./types" */
 import { alarm } from "./alarm.js";
 import { consoleNow, live } from "./live.js";
 import { MILD, alarmsOf, lostBody, waitsForResume } from "./now/troubles.js";
@@ -8,7 +10,9 @@ import { ROLES, askPin, leave, mode, show } from "./session.js";
 import {
   LANGUAGES,
   Since,
+  byId,
   html,
+  isTicked,
   keep,
   kept,
   language,
@@ -19,19 +23,29 @@ import {
   useRedraw,
   useRef,
   useState,
+  valueOf,
 } from "./ui.js";
 
 const PAGES = ["", "day", "files", "see"];
 
-/** The alarms of robots, `[robot, kind, when]` each: another fall is another alarm. Mild ones are left out. */
+/**
+ * The alarms of robots, `[robot, kind, when]` each: another fall is another alarm. Mild ones are left out.
+ * @typedef {[robot: string, kind: string, when: string]} Alarm
+ * @param {Robot[]} robots
+ * @returns {Alarm[]}
+ */
 const wrong = (robots) =>
   robots.flatMap((one) =>
     alarmsOf(one)
       .filter((kind) => !MILD.includes(kind))
-      .map((kind) => [one.robot, kind, live.alarms.get(`${one.robot} ${kind}`)?.at_time ?? ""]),
+      .map((kind) => /** @type {Alarm} */ ([one.robot, kind, live.alarms.get(`${one.robot} ${kind}`)?.at_time ?? ""])),
   );
 
-/** How the page and its robot are, in a word. */
+/**
+ * How the page and its robot are, in a word.
+ * @param {Robot | null | undefined} robot
+ * @param {Alarm[]} alarms
+ */
 function connection(robot, alarms) {
   if (live.state !== "live") return live.state;
   if (robot?.connected === false) return "robot-away";
@@ -39,10 +53,11 @@ function connection(robot, alarms) {
   return alarms.length ? "alarm" : "live";
 }
 
+/** @param {{ robot: Robot | null | undefined, alarms: Alarm[] }} props */
 function Connection({ robot, alarms }) {
   const state = connection(robot, alarms),
     away = state === "robot-away";
-  const at = away ? robot.heard : new Date(live.since).toISOString();
+  const at = away ? robot?.heard : new Date(live.since).toISOString();
   return html`<p class="connection" data-state=${state} role="status"><span class="dot" aria-hidden="true">
     </span>${t(`connection.${state}`)}
     ${
@@ -52,7 +67,10 @@ function Connection({ robot, alarms }) {
     }</p>`;
 }
 
-/** The alarms in the header of a page that does not show them itself; each leads to the page that says what to do. */
+/**
+ * The alarms in the header of a page that does not show them itself; each leads to the page that says what to do.
+ * @param {{ alarms: Alarm[], name: string | null }} props
+ */
 function Alarms({ alarms, name }) {
   const shown = name !== null && lumen.page !== "" ? alarms : [];
   return html`<div class="alarms" role="alert">${shown.map(
@@ -62,10 +80,11 @@ function Alarms({ alarms, name }) {
   )}</div>`;
 }
 
+/** @param {{ robot: Robot | null | undefined }} props */
 function Stopped({ robot }) {
   const waits = robot && waitsForResume(robot),
     by = inPageLanguage(robot?.stopped_by ?? "?");
-  if (!robot?.stopped && !waits) return null;
+  if (!robot || (!robot.stopped && !waits)) return null;
   return html`<div class="stopped"><p role="status">
     <strong>${t(waits ? "waits" : "stopped")}</strong> ${t(waits ? "waits.more" : "stopped.by", { by })}</p>
     <${Resume} robot=${robot} /></div>`;
@@ -73,13 +92,13 @@ function Stopped({ robot }) {
 
 function Theme() {
   const now = kept("lumen.theme") ?? "auto";
-  const set = (theme) => {
+  const set = (/** @type {string} */ theme) => {
     if (theme === "auto") delete document.documentElement.dataset.theme;
     else document.documentElement.dataset.theme = theme;
     keep("lumen.theme", theme === "auto" ? null : theme);
     redraw();
   };
-  return html`<label>${t("theme")}<select value=${now} onChange=${(e) => set(e.target.value)}>
+  return html`<label>${t("theme")}<select value=${now} onChange=${(/** @type {Event} */ e) => set(valueOf(e))}>
     ${["auto", "light", "dark"].map(
       (theme) => html`<option value=${theme}
       selected=${theme === now}>${t(`theme.${theme}`)}</option>`,
@@ -89,24 +108,24 @@ function Theme() {
 /** A sound as an alarm begins: this browser makes it, so each person decides for themselves. */
 function Sound() {
   const on = kept("lumen.sound") === "on";
-  const set = (wanted) => {
+  const set = (/** @type {boolean} */ wanted) => {
     keep("lumen.sound", wanted ? "on" : null);
     if (wanted) alarm.sound();
     redraw();
   };
   return html`<label class="check">
-    <input type="checkbox" checked=${on} onChange=${(e) => set(e.target.checked)} /> ${t("sound")}</label>`;
+    <input type="checkbox" checked=${on} onChange=${(/** @type {Event} */ e) => set(isTicked(e))} /> ${t("sound")}</label>`;
 }
 
 function Settings() {
   const [open, set] = useState(false),
-    button = useRef(null);
+    button = useRef(/** @type {HTMLButtonElement | null} */ (null));
   useEffect(() => {
     if (!open) return undefined;
-    const typed = (event) => {
+    const typed = (/** @type {KeyboardEvent} */ event) => {
       if (event.key === "Escape" && !event.repeat) {
         set(false);
-        button.current.focus();
+        button.current?.focus();
       }
     };
     addEventListener("keydown", typed);
@@ -119,13 +138,13 @@ function Settings() {
     <div id="settings" hidden=${!open} class="sheet">
       ${
         modes.length > 1 &&
-        html`<label>${t("mode")}<select value=${mode()} onChange=${(e) => show(e.target.value)}>
+        html`<label>${t("mode")}<select value=${mode()} onChange=${(/** @type {Event} */ e) => show(valueOf(e))}>
         ${modes.map(
           (one) => html`<option value=${one}
           selected=${one === mode()}>${t(`mode.${one}`)}</option>`,
         )}</select></label>`
       }
-      <label>${t("language")}<select value=${language()} onChange=${(e) => speak(e.target.value)}>
+      <label>${t("language")}<select value=${language()} onChange=${(/** @type {Event} */ e) => speak(valueOf(e))}>
         ${Object.entries(LANGUAGES).map(
           ([code, name]) => html`<option value=${code} lang=${code}
           selected=${code === language()}>${name}</option>`,
@@ -140,6 +159,7 @@ function Settings() {
     </div></div>`;
 }
 
+/** @param {{ name: string, several: boolean }} props */
 function Links({ name, several }) {
   const base = `/robot/${encodeURIComponent(name)}`;
   return html`<nav aria-label=${t("pages")}><ul>
@@ -162,8 +182,8 @@ export function Head() {
   useEffect(() => {
     const title = name ? `${name}: ${t(`page.${lumen.page || "now"}`)} · Lumen` : "Lumen";
     alarm.show(looks ? alarms : null, title);
-    document.getElementById("skip").textContent = t("skip");
-    document.querySelector("rest-button[main]").toggleAttribute("several", name === null && names.length > 1);
+    byId("skip").textContent = t("skip");
+    document.querySelector("rest-button[main]")?.toggleAttribute("several", name === null && names.length > 1);
   });
   return html`<div class="who"><p class="name">${name ?? "Lumen"}</p><${Connection} robot=${robot} alarms=${alarms} />
     </div>

@@ -1,5 +1,7 @@
+// @ts-check
 // What happens, as it happens: a stream of the console's events that all pages of this browser share.
 // Entries come once, in order, by the journal's position; a page that was away goes on where it was.
+/** @import { CommandSent, Entry, LiveEvent, Now, Robot, RobotSent, Role } from "./types" */
 import { blocks, parsed } from "./blocks.js";
 import { follow } from "./follow.js";
 import { redraw } from "./ui.js";
@@ -12,34 +14,48 @@ const AGAIN = 500,
 export const JOB = 250000; // [ms] longer than the console gives a process that computes something
 
 export const live = {
+  /** `connecting`, `live`, `away` or `asleep`. */
   state: "connecting",
   since: Date.now(),
-  role: null,
+  role: /** @type {Role | null} */ (null),
   fleet: false,
-  robots: new Map(),
-  entries: [],
-  told: [],
-  commands: [],
+  robots: /** @type {Map<string, Robot>} */ (new Map()),
+  entries: /** @type {Entry[]} */ ([]),
+  told: /** @type {Entry[]} */ ([]),
+  commands: /** @type {CommandSent[]} */ ([]),
   skew: 0,
-  alarms: new Map(), // the last entry of each alarm of each robot: busy ones don't push it out
+  alarms: /** @type {Map<string, Entry>} */ (new Map()), // the last entry of each alarm of each robot: busy ones don't push it out
 };
 /** Events of a robot's body that people have to see. */
 export const ALARMS = ["fallen", "motors.hot", "battery.low"];
-const seen = new Map(),
-  heard = new Set();
+/** @type {Map<string, [position: number, at_time: string]>} */
+const seen = new Map();
+/** @type {Set<(...event: LiveEvent) => void>} */
+const heard = new Set();
+/** @type {AbortController | null} */
 let stream = null,
   timer = 0;
 
-/** Have `handler(kind, data)` told of each `entry`, `now` and `command`; what it returns ends that. */
+/**
+ * Have `handler(kind, data)` told of each `entry`, `now` and `command`; what it returns ends that.
+ * @param {(...event: LiveEvent) => void} handler
+ */
 export function listen(handler) {
   heard.add(handler);
   return () => heard.delete(handler);
 }
 
+/** @param {Record<string, any>} values */
 const params = (values) =>
   new URLSearchParams(Object.entries(values).filter(([, value]) => value != null && value !== "")).toString();
 
-/** JSON of one of the console's paths; the error has what it says. */
+/**
+ * JSON of one of the console's paths; the error has what it says.
+ * @param {string} path
+ * @param {Record<string, any>} [values]
+ * @param {number} [limit]
+ * @returns {Promise<any>}
+ */
 export async function get(path, values = {}, limit = QUESTION) {
   const query = params(values);
   const answer = await fetch(query ? `${path}?${query}` : path, {
@@ -55,15 +71,20 @@ export async function get(path, values = {}, limit = QUESTION) {
 /**
  * What is known of a robot, with `skew`: how far the clock of its exhibition is ahead of this browser's [ms].
  * Its `now()` is the time of that clock [ms since 1970]; it stops while the robot does not answer.
+ * @param {string} name
  */
 export const robotOf = (name) => live.robots.get(name);
 
-/** Whether what the page shows of a robot is so now, and a command would reach it. */
+/**
+ * Whether what the page shows of a robot is so now, and a command would reach it.
+ * @param {RobotSent} robot
+ */
 export const isHere = (robot) => live.state === "live" && robot.connected !== false;
 
 /** The time of the console's clock [ms since 1970]. */
 export const consoleNow = () => Date.now() + live.skew;
 
+/** @param {RobotSent} robot */
 function took(robot) {
   const skew = live.skew + 1000 * (robot.ahead ?? 0);
   const last = () => {
@@ -74,6 +95,7 @@ function took(robot) {
   for (const button of document.querySelectorAll("rest-button")) button.heed?.([...live.robots.values()]);
 }
 
+/** @param {string} state */
 function become(state) {
   if (live.state !== state) Object.assign(live, { state, since: Date.now() });
   redraw();
@@ -85,6 +107,7 @@ export async function connect() {
   stream?.abort();
   const mine = (stream = new AbortController());
   try {
+    /** @type {Now} */
     const now = await get("/api/now", {}, ANSWER);
     live.role = now.role ?? "author";
     live.fleet = now.fleet ?? false;
@@ -94,8 +117,9 @@ export async function connect() {
     if (live.role === "nobody" && lumen.page !== "subtitles") return (become("live"), again(mine, 2000));
     await read(mine, now.robots);
   } catch (error) {
+    const { status } = /** @type {{ status?: number }} */ (error);
     if (mine.signal.aborted) return;
-    if (error.status === 401 || error.status === 403) {
+    if (status === 401 || status === 403) {
       live.role = "nobody";
       become("live");
       return again(mine, 2000);
@@ -104,6 +128,10 @@ export async function connect() {
   again(mine, AGAIN);
 }
 
+/**
+ * @param {AbortController} mine
+ * @param {number} after
+ */
 function again(mine, after) {
   if (mine !== stream) return;
   if (live.role !== "nobody") become("away");
@@ -113,6 +141,7 @@ function again(mine, after) {
 /**
  * Where to continue: what was seen last of each robot, also of one that a new console has not found yet, else a few
  * entries before now.
+ * @param {RobotSent[]} robots
  */
 function after(robots) {
   const known = new Map();
@@ -124,12 +153,17 @@ function after(robots) {
     .join(",");
 }
 
-/** Follow what happens until that is lost. What was before is asked for by itself; what comes meanwhile waits. */
+/**
+ * Follow what happens until that is lost. What was before is asked for by itself; what comes meanwhile waits.
+ * @param {AbortController} mine
+ * @param {RobotSent[]} robots
+ */
 async function read(mine, robots) {
-  let waiting = [],
-    lose = () => {};
+  /** @type {string[] | null} */
+  let waiting = [];
+  let lose = () => {};
   const lost = new Promise((done) => {
-    lose = done;
+    lose = () => done(null);
   });
   const leave = follow("/api/events", live.role, (block) => (waiting ? waiting.push(block) : take(block, mine)), lose);
   mine.signal.addEventListener("abort", lose);
@@ -149,15 +183,24 @@ async function read(mine, robots) {
   }
 }
 
+/**
+ * @param {Entry[]} list
+ * @param {Entry} entry
+ */
 const add = (list, entry) => {
   list.push(entry);
   if (list.length > MOST) list.shift();
 };
 
-/** What a block says. Where entries are missing before one that comes `live` they are asked for, and it with them. */
+/**
+ * What a block says. Where entries are missing before one that comes `live` they are asked for, and it with them.
+ * @param {string} block
+ * @param {AbortController | null} [shared]
+ */
 function take(block, shared = null) {
-  const [kind, body] = parsed(block) ?? [];
-  if (!kind || shared?.signal.aborted) return;
+  const event = /** @type {LiveEvent | null} */ (parsed(block));
+  if (!event || shared?.signal.aborted) return;
+  const [kind, body] = event;
   if (kind === "entry") {
     if (lumen.robot && body.robot !== lumen.robot) return;
     const [last, when] = seen.get(body.robot) ?? [-1, ""]; // a journal that begins anew counts anew, later
@@ -168,11 +211,11 @@ function take(block, shared = null) {
     }
     seen.set(body.robot, [body.position, body.at_time]);
     add(live.entries, body);
-    if (ALARMS.includes(body.heard)) live.alarms.set(`${body.robot} ${body.heard}`, body);
+    if (body.heard && ALARMS.includes(body.heard)) live.alarms.set(`${body.robot} ${body.heard}`, body);
     if (body.text) add(live.told, body); // of those that people read as many are kept, however many faces come between
   } else if (kind === "now") took(body);
   else if (kind === "command") live.commands = [body, ...live.commands].slice(0, 20);
-  for (const handler of heard) handler(kind, body);
+  for (const handler of heard) handler(...event);
   redraw();
 }
 

@@ -1,6 +1,9 @@
+// @ts-check
 // Rest. The first thing that loads, and it needs nothing else of the page: the button is made here, so that there is
 // none which does nothing. Each press is a message of its own and says what became of it, also when nobody answers.
+/** @import { Answer, RobotSent, Tell } from "./types" */
 (() => {
+  /** @type {Record<string, Record<string, string>>} */
   const WORDS = {
     en: {
       rest: "Rest",
@@ -34,6 +37,7 @@
     TWICE = 1500; // [ms]: an answer's first bytes, all of it; two presses of Escape
   const NEW = 5000; // [ms] after a press what a robot says of itself is newer than it
   const MOVES = 30000; // [ms] after a press a robot that moves does so again, even if this page never saw it at rest
+  /** @type {Record<string, string>} */
   const SIGNS = { sending: "…", unsent: "✕", failed: "✕", unknown: "?", sent: "→", finished: "✓", after_all: "✓" };
   const ALARMS = ["unsent", "failed", "unknown"],
     RESTS = ["finished", "after_all"];
@@ -43,6 +47,7 @@
   const SEEN = 2000; // for which its answer stands on a page until it counts as seen there [ms]
   const root = document.documentElement;
 
+  /** @param {string} key */
   const kept = (key) => {
     try {
       return localStorage.getItem(key);
@@ -52,17 +57,27 @@
   };
   const language = kept("lumen.language") ?? (navigator.language.startsWith("id") ? "id" : "en");
   root.lang = language in WORDS ? language : "en";
-  if (kept("lumen.theme")) root.dataset.theme = kept("lumen.theme");
+  const theme = kept("lumen.theme");
+  if (theme) root.dataset.theme = theme;
   const words = () => WORDS[root.lang] ?? WORDS.en;
 
   const [, , name, page] = location.pathname.split("/");
-  const robot = location.pathname.startsWith("/robot/") ? decodeURIComponent(name) : "*";
+  const robot = location.pathname.startsWith("/robot/") ? decodeURIComponent(name ?? "") : "*";
   const forVisitors = page === "subtitles";
 
   const newId = () =>
     Array.from(crypto.getRandomValues(new Uint8Array(16)), (b) => b.toString(16).padStart(2, "0")).join("");
 
-  /** Keep a press of Rest until it is known what became of it, in this window only; null forgets it. */
+  /**
+   * A press of Rest: its message, when it was [ms since 1970], what was told of it, and whether an answer came.
+   * @typedef {{ id: string, robot: string, at: number, told?: Told, answered?: boolean }} Press
+   * @typedef {[state: string, answer: Answer]} Told
+   */
+
+  /**
+   * Keep a press of Rest until it is known what became of it, in this window only; null forgets it.
+   * @param {Press | null} press
+   */
   function remember(press) {
     try {
       press ? sessionStorage.setItem(PRESSED, JSON.stringify(press)) : sessionStorage.removeItem(PRESSED);
@@ -70,16 +85,21 @@
       /* a private window */
     }
   }
+  /** @returns {Press | null} */
   function remembered() {
     try {
-      const press = JSON.parse(sessionStorage.getItem(PRESSED));
+      const press = JSON.parse(sessionStorage.getItem(PRESSED) ?? "null");
       return press && Date.now() - press.at < TOLD ? press : null;
     } catch {
       return null;
     }
   }
 
-  /** Send a command, and report its state: sending, unsent, sent, unknown, then finished or failed, with the answer. */
+  /**
+   * Send a command, and report its state: sending, unsent, sent, unknown, then finished or failed, with the answer.
+   * @param {Record<string, any>} fields
+   * @param {Tell} tell
+   */
   async function post(fields, tell) {
     const began = performance.now(),
       passed = () => (performance.now() - began) / 1000;
@@ -112,22 +132,40 @@
     }
   }
 
+  /**
+   * @template {keyof HTMLElementTagNameMap} Tag
+   * @param {Tag} tag
+   * @param {Record<string, any>} [properties]
+   * @returns {HTMLElementTagNameMap[Tag]}
+   */
+  const make = (tag, properties = {}) => Object.assign(document.createElement(tag), properties);
+
   class RestButton extends HTMLElement {
+    presses = 0;
+    rested = false; // since the last press, in a report of the robots
+    /** @type {Press | undefined} */
+    sent;
+    /** @type {Told | undefined} */
+    told;
+    /** @type {RobotSent[] | undefined} */
+    robots;
+    button = make("button", { type: "button", className: "rest" });
+    label = make("span");
+    whom = make("span", { className: "whom" });
+    said = make("div", { className: "rest-said", hidden: true });
+    calm = make("p");
+    alarm = make("p");
+    sign = make("span", { className: "sign" });
+    close = make("button", { type: "button", className: "plain" });
+
     connectedCallback() {
-      if (this.button || forVisitors) return;
-      const make = (tag, properties = {}) => Object.assign(document.createElement(tag), properties);
-      this.presses = 0;
-      this.button = make("button", { type: "button", className: "rest" });
-      ((this.label = make("span")), (this.whom = make("span", { className: "whom" })));
+      if (this.button.parentElement || forVisitors) return;
       this.whom.setAttribute("aria-hidden", "true"); // a description says it: the button's name is Rest
       this.button.append(this.label, this.whom);
       this.button.addEventListener("click", () => this.press());
-      this.said = make("div", { className: "rest-said", hidden: true });
-      ((this.calm = make("p")), (this.alarm = make("p")), (this.sign = make("span", { className: "sign" })));
       (this.calm.setAttribute("role", "status"),
         this.alarm.setAttribute("role", "alert"),
         this.sign.setAttribute("aria-hidden", "true"));
-      this.close = make("button", { type: "button", className: "plain" });
       this.close.addEventListener("click", () => {
         this.said.hidden = true;
         this.forget(this.sent);
@@ -145,7 +183,7 @@
 
     speak() {
       // in the page's language
-      if (!this.button) return;
+      if (!this.button.parentElement) return;
       ((this.label.textContent = words().rest), (this.close.textContent = words().dismiss));
       const whom = this.getAttribute("robot") ?? robot;
       this.whom.textContent = whom === "*" ? words().all : whom;
@@ -153,8 +191,10 @@
       if (this.told && !this.said.hidden) this.show(...this.told);
     }
 
+    /** @param {Press | null} [again] */
     press(again = null) {
       const press = ++this.presses;
+      /** @type {Press} */
       const sent = again ?? { id: newId(), robot: this.getAttribute("robot") ?? robot, at: Date.now() };
       ((this.sent = sent), (this.rested = false));
       remember(sent);
@@ -166,29 +206,36 @@
       });
     }
 
+    /** @param {Press} sent */
     recall(sent) {
       // an older press, not sent again: what the page before reported, if that was more than its being sent
-      const [state, answer] = sent.told ?? [];
+      const [state = "unknown", answer] = sent.told ?? [];
       ((this.sent = sent), (this.rested = false), (sent.answered = true));
       this.show([...ALARMS, ...RESTS].includes(state) ? state : "unknown", answer);
       setTimeout(() => this.forget(sent), SEEN);
     }
 
+    /** @param {Press | undefined} sent */
     forget(sent) {
       // the next page need not tell of it
       if (sent?.answered && remembered()?.id === sent.id) remember(null);
     }
 
-    /** Correct what is shown by what the robots report: one may rest after all, and one that rested may move again. */
+    /**
+     * Correct what is shown by what the robots report: one may rest after all, and one that rested may move again.
+     * @param {RobotSent[]} [robots]
+     */
     heed(robots = this.robots) {
       this.robots = robots;
-      if (!robots || !this.sent || this.said.hidden) return;
-      const passed = Date.now() - this.sent.at,
-        meant = robots.filter((one) => this.sent.robot === "*" || one.robot === this.sent.robot);
+      const { sent } = this;
+      if (!robots || !sent || this.said.hidden) return;
+      const passed = Date.now() - sent.at,
+        meant = robots.filter((one) => sent.robot === "*" || one.robot === sent.robot);
       const rest = meant.length > 0 && meant.every((one) => one.stopped && one.connected);
-      if (ALARMS.includes(this.told[0])) {
+      const [told = ""] = this.told ?? [];
+      if (ALARMS.includes(told)) {
         if (rest && passed >= NEW) this.show("after_all");
-      } else if (RESTS.includes(this.told[0])) {
+      } else if (RESTS.includes(told)) {
         // A report from before the press may come late: a robot moves again only if it was at rest in a report before.
         if (rest) this.rested = true;
         else if (passed >= (this.rested ? NEW : MOVES) && meant.some((one) => !one.stopped && one.connected))
@@ -201,10 +248,14 @@
       if (!this.said.hidden) return;
       this.show("again");
       setTimeout(() => {
-        if (this.told[0] === "again") this.said.hidden = true;
+        if (this.told?.[0] === "again") this.said.hidden = true;
       }, TWICE);
     }
 
+    /**
+     * @param {string} state
+     * @param {Answer} [answer]
+     */
     show(state, answer = {}) {
       this.told = [state, answer];
       const seconds = (answer.seconds ?? 0).toLocaleString(root.lang, {
@@ -233,7 +284,7 @@
         escaped = -Infinity;
         return;
       } // it closes that, and asks for no rest
-      const main = document.querySelector("rest-button[main]"),
+      const main = /** @type {RestButton | null} */ (document.querySelector("rest-button[main]")),
         at = event.timeStamp; // a busy page hears keys late
       const twice = at - escaped < TWICE;
       escaped = twice ? -Infinity : at;

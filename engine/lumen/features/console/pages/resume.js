@@ -1,4 +1,6 @@
+// @ts-check
 // Resume: a robot that rests, or a behaviour that waits, goes on once a person has looked at the room.
+/** @import { Robot } from "./types" */
 import { command } from "./commands.js";
 import { isHere } from "./live.js";
 import { waitsForResume } from "./now/troubles.js";
@@ -6,7 +8,10 @@ import { inPageLanguage } from "./quoted.js";
 import { may } from "./session.js";
 import { Dialog, Usable, html, t, useState } from "./ui.js";
 
-/** The button and its question; nothing if the robot neither rests nor waits, or the person may not. */
+/**
+ * The button and its question; nothing if the robot neither rests nor waits, or the person may not.
+ * @param {{ robot: Robot }} props
+ */
 export function Resume({ robot }) {
   const [asking, ask] = useState(false),
     waits = waitsForResume(robot);

@@ -1,22 +1,28 @@
+// @ts-check
 // Who is here: nobody, show, operator or author, and as what of these the page is shown.
+/** @import { Role } from "./types" */
 import { connect, live } from "./live.js";
 import { Quote, reasonOf } from "./quoted.js";
-import { Dialog, html, keep, kept, redraw, t, useRedraw, useState } from "./ui.js";
+import { Dialog, html, keep, kept, redraw, t, useRedraw, useState, valueOf } from "./ui.js";
 
+/** @type {Role[]} */
 export const ROLES = ["nobody", "show", "operator", "author"];
 let asking = false;
 
 /** As what the page is shown: what was chosen, never above the role; an author begins as operator. */
 export function mode() {
   const role = live.role ?? "nobody",
-    chosen = kept("lumen.mode") ?? "operator";
+    chosen = /** @type {Role} */ (kept("lumen.mode") ?? "operator");
   return ROLES[Math.min(ROLES.indexOf(role), Math.max(1, ROLES.indexOf(chosen)))];
 }
+/** @param {Role} role */
 export const may = (role) => ROLES.indexOf(mode()) >= ROLES.indexOf(role);
 /**
  * Whether the person has this role, as whatever the page is shown: what is wrong in files concerns authors in any mode.
+ * @param {Role} role
  */
 export const holds = (role) => ROLES.indexOf(live.role ?? "nobody") >= ROLES.indexOf(role);
+/** @param {string} as */
 export function show(as) {
   keep("lumen.mode", as);
   redraw();
@@ -43,7 +49,7 @@ export function SignIn() {
     setWrong("");
     redraw();
   };
-  const enter = async (event) => {
+  const enter = async (/** @type {SubmitEvent} */ event) => {
     event.preventDefault();
     try {
       const answer = await fetch("/api/session", {
@@ -64,8 +70,8 @@ export function SignIn() {
     class="strong">${t("sign.in")}</button>`}>
     <form id="pin" class="fields" onSubmit=${enter}>
       <label>${t("pin")}<input type="password" inputmode="numeric" autocomplete="current-password" required autofocus
-        aria-describedby="pin-wrong" value=${pin} onInput=${(e) => setPin(e.target.value)} /></label>
+        aria-describedby="pin-wrong" value=${pin} onInput=${(/** @type {Event} */ e) => setPin(valueOf(e))} /></label>
       <label>${t("your.name")}<input autocomplete="name" maxlength="60" value=${name}
-        onInput=${(e) => setName(e.target.value)} /></label>
+        onInput=${(/** @type {Event} */ e) => setName(valueOf(e))} /></label>
       <p id="pin-wrong" class="bad" role="alert"><${Quote} text=${wrong} /></p></form></${Dialog}>`;
 }

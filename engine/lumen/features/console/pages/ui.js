@@ -158,6 +158,12 @@ export function Until({ at, now = Date.now }) {
   return html`<time datetime=${at}>${span((Date.parse(at) - now()) / 1000 + 0.5)}</time>`;
 }
 
+/**
+ * An element of shell.html.
+ * @param {string} id
+ */
+export const byId = (id) => /** @type {HTMLElement} */ (document.getElementById(id));
+
 let ids = 0;
 export const useId = () => useRef(`e${++ids}`).current;
 

@@ -1,4 +1,6 @@
+// @ts-check
 // Several robots: a tile each, with what is wrong with it and its own Rest.
+/** @import { Robot } from "./types" */
 import { consoleNow, isHere, live } from "./live.js";
 import { inPageLanguage } from "./quoted.js";
 import { Resume } from "./resume.js";
@@ -6,14 +8,20 @@ import { Since, html, percent, t, useRedraw } from "./ui.js";
 import { innermost } from "./now/states.js";
 import { LOW, MILD, alarmsOf, batteryOf } from "./now/troubles.js";
 
-/** How a robot is, as badges: what is wrong, what it waits for, that it rests; else that it runs. */
+/**
+ * How a robot is, as badges: what is wrong, what it waits for, that it rests; else that it runs.
+ * @param {Robot} robot
+ * @returns {[state: string, text: string][]}
+ */
 function badges(robot) {
+  /** @type {[string, string][]} */
   const all = alarmsOf(robot).map((kind) => [MILD.includes(kind) ? "warn" : "bad", t(`alarm.${kind}`)]);
   const by = inPageLanguage(robot.stopped_by ?? "?");
   if (robot.stopped && isHere(robot)) all.push(["stopped", t("tile.stopped", { by })]);
   return all.length ? all : [["well", t("tile.well")]];
 }
 
+/** @param {{ robot: Robot }} props */
 function Tile({ robot }) {
   const { robot: name, saying } = robot,
     link = `/robot/${encodeURIComponent(name)}`,

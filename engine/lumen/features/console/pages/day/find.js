@@ -1,21 +1,28 @@
+// @ts-check
 // Find a moment of the day: by its time, or by words that a visitor or the robot said.
+/** @import { Entry as Written, Entries, Stretch } from "../types" */
 import { JOB, get } from "../live.js";
 import { Entry } from "../now/entries.js";
 import { Quote, reasonOf } from "../quoted.js";
-import { Part, html, t, useState } from "../ui.js";
+import { Part, html, t, useState, valueOf } from "../ui.js";
 
 const TIME = /^\s*([01]?\d|2[0-3])[:.]([0-5]\d)(?:[:.]([0-5]\d))?\s*$/;
 
-/** A time of day, such as 14:03 or 14.03.20, on a date [ms since 1970]; null if the text is none. */
+/**
+ * A time of day, such as 14:03 or 14.03.20, on a date [ms since 1970]; null if the text is none.
+ * @param {string} date
+ * @param {string} text
+ */
 export function momentOf(date, text) {
-  const [found, hour, minute, second = "00"] = TIME.exec(text) ?? [];
-  return found ? Date.parse(`${date}T${hour.padStart(2, "0")}:${minute}:${second}`) : null;
+  const [, hour, minute, second = "00"] = TIME.exec(text) ?? [];
+  return hour ? Date.parse(`${date}T${hour.padStart(2, "0")}:${minute}:${second}`) : null;
 }
 
+/** @param {{ date: string, scrub: (at: number) => void }} props */
 function GoTo({ date, scrub }) {
   const [text, write] = useState(""),
     [wrong, complain] = useState("");
-  const go = (submitted) => {
+  const go = (/** @type {SubmitEvent} */ submitted) => {
     submitted.preventDefault();
     const at = momentOf(date, text);
     complain(at === null ? t("find.time.wrong") : "");
@@ -23,15 +30,16 @@ function GoTo({ date, scrub }) {
   };
   return html`<form class="go-to" onSubmit=${go}>
     <label><span>${t("find.time")}</span><input value=${text} placeholder="14:03" size="8" maxlength="8"
-      autocomplete="off" onInput=${(e) => write(e.target.value)} /></label>
+      autocomplete="off" onInput=${(/** @type {Event} */ e) => write(valueOf(e))} /></label>
     <button>${t("find.time.go")}</button><p class="bad" role="alert">${wrong}</p></form>`;
 }
 
+/** @param {{ name: string, first: number, last: number, open: (entry: Written) => void }} props */
 function Search({ name, first, last, open }) {
   const [text, write] = useState(""),
-    [found, show] = useState(null),
+    [found, show] = useState(/** @type {Entries | null} */ (null)),
     [wrong, complain] = useState("");
-  const search = async (submitted) => {
+  const search = async (/** @type {SubmitEvent} */ submitted) => {
     submitted.preventDefault();
     complain("");
     if (!text.trim()) return show(null);
@@ -41,21 +49,26 @@ function Search({ name, first, last, open }) {
       complain(reasonOf(error));
     }
   };
-  const told = () =>
+  const told = (/** @type {Entries} */ found) =>
     found.more ? t("find.more", { n: found.entries.length }) : t("find.count", { n: found.entries.length });
   return html`<form class="search" role="search" onSubmit=${search}>
       <label class="grow"><span>${t("find.text")}</span><input type="search" value=${text} maxlength="200"
-        autocomplete="off" onInput=${(e) => write(e.target.value)} /></label>
+        autocomplete="off" onInput=${(/** @type {Event} */ e) => write(valueOf(e))} /></label>
       <button>${t("find.text.go")}</button></form>
-    <p role="status">${found ? told() : ""}</p><p class="bad" role="alert"><${Quote} text=${wrong} /></p>
+    <p role="status">${found ? told(found) : ""}</p><p class="bad" role="alert"><${Quote} text=${wrong} /></p>
     ${
-      found?.entries.length > 0 &&
+      found &&
+      found.entries.length > 0 &&
       html`<ol class="entry-list bounded found" tabindex="0" aria-label=${t("find")}>
       ${found.entries.map((entry) => html`<${Entry} key=${entry.position} entry=${entry} onOpen=${open} />`)}</ol>`
     }`;
 }
 
-/** `scrub(at)` looks at a moment [ms since 1970], `open(entry)` at an entry; `parts` are the stretches of the day. */
+/**
+ * `scrub(at)` looks at a moment [ms since 1970], `open(entry)` at an entry; `parts` are the stretches of the day.
+ * @typedef {{ scrub: (at: number) => void, open: (entry: Written) => void }} Looks
+ * @param {{ name: string, date: string, parts: Stretch[] } & Looks} props
+ */
 export function Find({ name, date, parts, scrub, open }) {
   return html`<${Part} title=${t("find")} kind="find"><${GoTo} date=${date} scrub=${scrub} />
     ${

@@ -1,8 +1,15 @@
+// @ts-check
 // Fork from here: what would have been, with another event or with the saved files; beside what was.
+/** @import { Data, Entry, Forked } from "../types" */
+/** @import { Filled } from "./instead.js" */
 import { Quote, reasonOf } from "../quoted.js";
-import { Part, clock, html, lineOf, t, useEffect, useRef, useState } from "../ui.js";
+import { Part, clock, html, isTicked, lineOf, t, useEffect, useRef, useState } from "../ui.js";
 import { Instead, blank, eventOf } from "./instead.js";
 
+/**
+ * @param {Data} body
+ * @returns {Promise<Forked>}
+ */
 async function ask(body) {
   const answer = await fetch("/api/fork", {
     method: "POST",
@@ -15,8 +22,10 @@ async function ask(body) {
   return said;
 }
 
+/** @param {{ title: string, entries: Entry[], other: Entry[], from: Entry }} props */
 function Column({ title, entries, other, from }) {
-  const when = (one) => new Date(Date.parse(from.at_time) + 1000 * (one.at - from.at)).toISOString();
+  const when = (/** @type {Entry} */ one) =>
+    new Date(Date.parse(from.at_time) + 1000 * (one.at - from.at)).toISOString();
   const there = new Set(other.map((entry) => entry.text));
   return html`<div><h3>${title}</h3><ol>${entries
     .filter((entry) => entry.text)
@@ -31,23 +40,32 @@ function Column({ title, entries, other, from }) {
     )}</ol></div>`;
 }
 
-/** What a visitor said by an entry, as `{result, language}`; null if it is no speech. */
+/**
+ * What a visitor said by an entry, as `{result, language}`; null if it is no speech.
+ * @param {Entry | null} entry
+ */
 export const speechOf = (entry) => (entry?.heard && typeof entry.data?.result === "string" ? entry.data : null);
 
-/** `asked`: a person wants other words than those of the entry, so their field has the focus. */
+/**
+ * `asked`: a person wants other words than those of the entry, so their field has the focus.
+ * @param {{ name: string, entry: Entry | null, asked?: boolean }} props
+ */
 export function Fork({ name, entry, asked = false }) {
   const speech = asked ? speechOf(entry) : null,
-    box = useRef(null);
+    box = useRef(/** @type {HTMLFormElement | null} */ (null));
   const [form, set] = useState(() => blank(speech?.result, speech?.language)),
     [saved, setSaved] = useState(false);
-  const [found, show] = useState(null),
+  const [found, show] = useState(/** @type {(Forked & { from: Entry }) | null} */ (null)),
     [wrong, tell] = useState(""),
     [busy, wait] = useState(false);
   useEffect(() => {
-    if (speech) box.current?.querySelector("input.words")?.select();
+    /** @type {HTMLInputElement | null | undefined} */
+    const words = box.current?.querySelector("input.words");
+    if (speech) words?.select();
   }, []);
-  const go = async (submitted) => {
+  const go = async (/** @type {SubmitEvent} */ submitted) => {
     submitted.preventDefault();
+    if (!entry) return;
     (tell(""), wait(true), show(null));
     const body = { robot: name, position: entry.position, event: eventOf(form), bundle: saved ? "saved" : null };
     try {
@@ -64,8 +82,8 @@ export function Fork({ name, entry, asked = false }) {
       entry &&
       html`<form class="cue" ref=${box} onSubmit=${go}>
       <p class="grow"><b>${clock(entry.at_time)}</b> ${lineOf(entry)}</p>
-      <${Instead} name=${name} form=${form} write=${(changes) => set((now) => ({ ...now, ...changes }))} />
-      <label class="check"><input type="checkbox" checked=${saved} onChange=${(e) => setSaved(e.target.checked)} />
+      <${Instead} name=${name} form=${form} write=${(/** @type {Partial<Filled>} */ changes) => set((now) => ({ ...now, ...changes }))} />
+      <label class="check"><input type="checkbox" checked=${saved} onChange=${(/** @type {Event} */ e) => setSaved(isTicked(e))} />
         ${" "}${t("fork.files")}</label>
       <button class="strong" disabled=${busy}>${t("fork.go")}</button></form>`
     }

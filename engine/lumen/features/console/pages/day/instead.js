@@ -1,8 +1,21 @@
+// @ts-check
 // What happens instead, for a fork: nothing else, other words of the visitor, or an event with its values.
 import { robotOf } from "../live.js";
-import { html, languageName, t } from "../ui.js";
+import { html, languageName, t, valueOf } from "../ui.js";
 
-/** Of a form that nobody has filled in; `says` is what the visitor said then. */
+/**
+ * What is filled in: `kind` is `same`, `says` or `event`; the others belong to `says` or `event`.
+ * @typedef {{ name: string, value: string }} Value
+ * @typedef {{ kind: string, words: string, language: string, event: string, values: Value[] }} Filled
+ * @typedef {(changes: Partial<Filled>) => void} Write
+ */
+
+/**
+ * Of a form that nobody has filled in; `says` is what the visitor said then.
+ * @param {string | null} [says]
+ * @param {string} [language]
+ * @returns {Filled}
+ */
 export const blank = (says = null, language = "") => ({
   kind: says === null ? "same" : "says",
   words: says ?? "",
@@ -11,14 +24,20 @@ export const blank = (says = null, language = "") => ({
   values: [{ name: "", value: "" }],
 });
 
-/** A value as it is typed: a number, true or false, else a text. */
+/**
+ * A value as it is typed: a number, true or false, else a text.
+ * @param {string} text
+ */
 function typed(text) {
   const trimmed = text.trim();
   if (/^-?\d+(\.\d+)?$/.test(trimmed)) return Number(trimmed);
-  return { true: true, false: false }[trimmed] ?? trimmed;
+  return trimmed === "true" || (trimmed === "false" ? false : trimmed);
 }
 
-/** The event that a filled in form means, as `POST /api/fork` reads it; null for the same as then. */
+/**
+ * The event that a filled in form means, as `POST /api/fork` reads it; null for the same as then.
+ * @param {Filled} form
+ */
 export function eventOf({ kind, words, language, event, values }) {
   if (kind === "says") return { name: "heard", data: { result: words.trim(), ...(language ? { language } : {}) } };
   if (kind === "same" || !event.trim()) return null;
@@ -26,47 +45,54 @@ export function eventOf({ kind, words, language, event, values }) {
   return { name: event.trim(), data: Object.fromEntries(named) };
 }
 
+/** @param {{ languages: string[], form: Filled, write: Write }} props */
 function Words({ languages, form, write }) {
   const spoken = form.language || languages[0];
   return html`<label class="grow"><span>${t("fork.words")}</span>
       <input class="words" value=${form.words} maxlength="500" required autocomplete="off" lang=${spoken}
-        onInput=${(e) => write({ words: e.target.value, language: spoken })} /></label>
+        onInput=${(/** @type {Event} */ e) => write({ words: valueOf(e), language: spoken })} /></label>
     ${
       languages.length > 1 &&
       html`<label><span>${t("language")}</span>
-      <select value=${spoken} onChange=${(e) => write({ language: e.target.value })}>${languages.map(
+      <select value=${spoken} onChange=${(/** @type {Event} */ e) => write({ language: valueOf(e) })}>${languages.map(
         (one) => html`
         <option value=${one} selected=${one === spoken}>${languageName(one)}</option>`,
       )}</select></label>`
     }`;
 }
 
+/** @param {{ values: Value[], write: Write }} props */
 function Values({ values, write }) {
-  const change = (at, more) => write({ values: values.map((one, n) => (n === at ? { ...one, ...more } : one)) });
+  const change = (/** @type {number} */ at, /** @type {Partial<Value>} */ more) =>
+    write({ values: values.map((one, n) => (n === at ? { ...one, ...more } : one)) });
   return html`<ul class="plain-list event-values">${values.map(
     (one, n) => html`<li key=${n}>
       <label><span>${t("fork.value.name")}</span><input class="value-name" value=${one.name} autocomplete="off"
-        spellcheck=${false} onInput=${(e) => change(n, { name: e.target.value })} /></label>
+        spellcheck=${false} onInput=${(/** @type {Event} */ e) => change(n, { name: valueOf(e) })} /></label>
       <label><span>${t("fork.value")}</span><input class="value" value=${one.value} autocomplete="off"
-        onInput=${(e) => change(n, { value: e.target.value })} /></label></li>`,
+        onInput=${(/** @type {Event} */ e) => change(n, { value: valueOf(e) })} /></label></li>`,
   )}</ul>
     <button type="button" onClick=${() => write({ values: [...values, { name: "", value: "" }] })}>
       ${t("fork.value.add")}</button>`;
 }
 
+/** @param {{ events: string[], form: Filled, write: Write }} props */
 function Other({ events, form, write }) {
   return html`<label class="grow"><span>${t("fork.name")}</span><input list="fork-events" value=${form.event} required
-      autocomplete="off" spellcheck=${false} onInput=${(e) => write({ event: e.target.value })} /></label>
+      autocomplete="off" spellcheck=${false} onInput=${(/** @type {Event} */ e) => write({ event: valueOf(e) })} /></label>
     <datalist id="fork-events">${events.map((one) => html`<option value=${one} />`)}</datalist>
     <${Values} values=${form.values} write=${write} />`;
 }
 
-/** `form` is as `blank` makes it; `write(changes)` changes some of it. */
+/**
+ * `form` is as `blank` makes it; `write(changes)` changes some of it.
+ * @param {{ name: string, form: Filled, write: Write }} props
+ */
 export function Instead({ name, form, write }) {
   const robot = robotOf(name),
     languages = robot?.languages?.length ? robot.languages : [robot?.language ?? "en"];
   return html`<label><span>${t("fork.instead")}</span>
-      <select class="instead" value=${form.kind} onChange=${(e) => write({ kind: e.target.value })}>
+      <select class="instead" value=${form.kind} onChange=${(/** @type {Event} */ e) => write({ kind: valueOf(e) })}>
         ${["same", "says", "event"].map(
           (one) => html`
           <option value=${one} selected=${one === form.kind}>${t(`fork.${one}`)}</option>`,

@@ -1,38 +1,59 @@
+// @ts-check
 // The day from left to right: hours, visits, marks, and the moment that is looked at.
-import { clock, html, span, t } from "../ui.js";
+/** @import { Day, Stretch } from "../types" */
+import { clock, html, span, t, valueOf } from "../ui.js";
 
 const HOUR = 3600e3,
   STEP = 1000,
   WIDE = 1000,
   HIGH = 84; // [ms], [ms], of the picture
 
-/** What a day consists of, in its order: visits, and what happened between them. */
-export const stretches = (day) => [...day.visits, ...(day.between ?? [])].sort((one, other) => one.from - other.from);
+/**
+ * What a day consists of, in its order: visits, and what happened between them.
+ * @param {Day} day
+ * @returns {Stretch[]}
+ */
+export const stretches = (day) =>
+  /** @type {Stretch[]} */ ([...day.visits, ...(day.between ?? [])]).sort((one, other) => one.from - other.from);
 
-/** From the full hour before the first of what happened to the one after the last [ms since 1970]. */
+/**
+ * From the full hour before the first of what happened to the one after the last [ms since 1970].
+ * @param {Day} day
+ * @returns {[begin: number, end: number]}
+ */
 export function bounds(day) {
   const times = stretches(day)
     .flatMap((one) => [one.began, one.ended])
     .concat(day.marks?.map((one) => one.at) ?? [])
     .filter(Boolean)
-    .map(Date.parse);
+    .map((one) => Date.parse(one));
   if (!times.length) return [Date.now() - HOUR, Date.now()];
   return [Math.floor(Math.min(...times) / HOUR) * HOUR, Math.ceil((Math.max(...times) + 1) / HOUR) * HOUR];
 }
 
-/** What happens at the moment: a visit, or something between visits. */
+/**
+ * What happens at the moment: a visit, or something between visits.
+ * @param {Stretch} visit
+ */
 const around = (visit) =>
   visit.n ? `${t("day.visit", { n: visit.n })}, ${span(visit.seconds ?? 0)}` : t("day.between");
 
+/**
+ * `scrub(at)` looks at a moment [ms since 1970], `look(part)` at a visit or at what was between two.
+ * @typedef {{ scrub: (at: number) => void, look: (part: Stretch) => void }} Looks
+ * @param {{ day: Day, bounds: [number, number], visit: Stretch | null, moment: number } & Looks} props
+ */
 export function Line({ day, bounds: [begin, end], visit, moment, scrub, look }) {
-  const x = (at) => ((at - begin) / (end - begin)) * WIDE,
-    hours = [];
+  const x = (/** @type {number} */ at) => ((at - begin) / (end - begin)) * WIDE,
+    hours = /** @type {number[]} */ ([]);
   const each = Math.max(1, Math.ceil((end - begin) / HOUR / 12)) * HOUR;
   for (let at = begin; at <= end; at += each) hours.push(at);
-  const iso = (at) => new Date(at).toISOString();
+  const iso = (/** @type {number} */ at) => new Date(at).toISOString();
   return html`<section class="part line" aria-label=${t("day.scrub")}>
-    <svg viewBox="0 0 ${WIDE} ${HIGH}" preserveAspectRatio="none" aria-hidden="true" onClick=${(e) => {
-      const box = e.currentTarget.getBoundingClientRect();
+    <svg viewBox="0 0 ${WIDE} ${HIGH}" preserveAspectRatio="none" aria-hidden="true" onClick=${(
+      /** @type {MouseEvent} */ e,
+    ) => {
+      const box = /** @type {Element} */ (e.currentTarget).getBoundingClientRect();
       scrub(begin + ((e.clientX - box.left) / box.width) * (end - begin));
     }}>
       <rect class="road" x="0" y="22" width=${WIDE} height="40" rx="6" />
@@ -49,7 +70,9 @@ export function Line({ day, bounds: [begin, end], visit, moment, scrub, look }) 
           one,
         ) => html`<rect class="bar ${one.from === visit?.from ? "now" : ""}" x=${x(Date.parse(one.began))} y="26" rx="3"
           height="32"
-        width=${Math.max(3, x(Date.parse(one.ended ?? iso(end))) - x(Date.parse(one.began)))} onClick=${(e) => {
+        width=${Math.max(3, x(Date.parse(one.ended ?? iso(end))) - x(Date.parse(one.began)))} onClick=${(
+          /** @type {MouseEvent} */ e,
+        ) => {
           e.stopPropagation();
           look(one);
         }} />`,
@@ -60,7 +83,7 @@ export function Line({ day, bounds: [begin, end], visit, moment, scrub, look }) 
     <label><span class="hidden">${t("day.scrub")}</span><input type="range" min=${begin} max=${end} step=${STEP}
       value=${moment}
       aria-valuetext="${clock(iso(moment))}${visit ? `, ${around(visit)}` : ""}"
-      onInput=${(e) => scrub(Number(e.target.value))} /></label>
+      onInput=${(/** @type {Event} */ e) => scrub(Number(valueOf(e)))} /></label>
     ${
       day.marks?.length > 0 &&
       html`<ul class="marks">${day.marks.map(

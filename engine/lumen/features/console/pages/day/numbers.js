@@ -1,10 +1,13 @@
+// @ts-check
 // The day's numbers: each chart is a table whose rows have a bar, so that everybody reads the same.
+/** @import { Count, Day, DayNumbers } from "../types" */
 import { Part, fixed, fullHour, html, languageName, span, t } from "../ui.js";
 import { Said } from "./said.js";
 import { Unanswered } from "./unanswered.js";
 
 const MOST = 8;
 
+/** @param {{ title: string, rows: Count[], all?: boolean }} props */
 function Chart({ title, rows, all = false }) {
   const shown = all ? rows : rows.slice(0, MOST),
     most = Math.max(1, ...rows.map(([, count]) => count));
@@ -19,9 +22,12 @@ function Chart({ title, rows, all = false }) {
     ${rows.length === 0 && html`<p class="quiet">${t("day.none.numbers")}</p>`}</div>`;
 }
 
-/** The numbers of the day that an operator reads first: visits, how long they took, falls. */
+/**
+ * The numbers of the day that an operator reads first: visits, how long they took, falls.
+ * @param {{ numbers: DayNumbers }} props
+ */
 export function Totals({ numbers }) {
-  const length = (seconds) => (seconds == null ? t("unknown") : span(seconds));
+  const length = (/** @type {number | null} */ seconds) => (seconds == null ? t("unknown") : span(seconds));
   const facts = [
     ["day.count", fixed(numbers.visits)],
     ["day.mean", length(numbers.mean_seconds)],
@@ -34,6 +40,7 @@ export function Totals({ numbers }) {
   )}</dl>`;
 }
 
+/** @param {{ name: string, day: Day }} props */
 export function Numbers({ name, day }) {
   const { numbers } = day;
   const query = new URLSearchParams({ robot: name, date: day.date });

@@ -1,10 +1,25 @@
+// @ts-check
 // The day: a time line to go along, visit by visit, with what happened, its why, its numbers, and what would have been.
+/** @import { Day, Entry as Written, Entries, Stretch, Visit } from "../types" */
 import { command } from "../commands.js";
 import { JOB, get, listen, live } from "../live.js";
 import { Entry, Why, question } from "../now/entries.js";
 import { Quote, reasonOf } from "../quoted.js";
 import { may } from "../session.js";
-import { Part, clock, html, languageName, lineOf, span, t, useEffect, useRedraw, useRef, useState } from "../ui.js";
+import {
+  Part,
+  clock,
+  html,
+  languageName,
+  lineOf,
+  span,
+  t,
+  useEffect,
+  useRedraw,
+  useRef,
+  useState,
+  valueOf,
+} from "../ui.js";
 import { Find } from "./find.js";
 import { Fork, speechOf } from "./fork.js";
 import { Line, bounds, stretches } from "./line.js";
@@ -15,6 +30,7 @@ const AROUND = 40; // entries that are shown around a moment
 const SOON = 500,
   AGAIN = 15000; // [ms] after what happened last, and between two looks at the day: a look is dear
 
+/** @param {{ day: Day, visit: Stretch | null, choose: (visit: Visit) => void }} props */
 function Visits({ day, visit, choose }) {
   return html`<${Part} title=${t("day.visits")} kind="visits">
     ${
@@ -32,7 +48,11 @@ function Visits({ day, visit, choose }) {
     }</${Part}>`;
 }
 
-/** Those of a visit's entries that are nearest to a moment, in their order. */
+/**
+ * Those of a visit's entries that are nearest to a moment, in their order.
+ * @param {Written[]} entries
+ * @param {number} moment
+ */
 function nearest(entries, moment) {
   const shown = entries.filter((entry) => entry.text);
   const at = shown.findIndex((entry) => Date.parse(entry.at_time) > moment);
@@ -40,20 +60,31 @@ function nearest(entries, moment) {
   return shown.slice(Math.max(0, middle - AROUND / 2), Math.max(0, middle - AROUND / 2) + AROUND);
 }
 
+/**
+ * The entries around a moment [ms since 1970]: a person chooses one, asks why, or wants to change what was said.
+ * @typedef {(entry: Written) => void} Act
+ * @typedef {{ visit: Stretch | null, moment: number, chosen: Written | null }} Looked
+ * @param {{ name: string, choose: Act, change: Act } & Looked} props
+ */
 function Around({ name, visit, moment, chosen, choose, change }) {
-  const [entries, set] = useState(null),
+  const [entries, set] = useState(/** @type {Written[] | null} */ (null)),
     [failed, fail] = useState(""),
-    [why, ask] = useState(null),
-    of = useRef(null);
+    [why, ask] = useState(/** @type {Written | null} */ (null)),
+    of = useRef(-1);
   useEffect(() => {
-    if (of.current !== visit?.from) set(null); // of another visit; one that goes on keeps what is shown
-    of.current = visit?.from;
+    const from = visit?.from ?? -1;
+    if (of.current !== from) set(null); // of another visit; one that goes on keeps what is shown
+    of.current = from;
     fail("");
     let gone = false;
     if (visit)
       get("/api/entries", { robot: name, from: visit.from, to: visit.to }).then(
-        (found) => gone || set(found.entries),
-        (error) => gone || fail(reasonOf(error)),
+        (/** @type {Entries} */ found) => {
+          if (!gone) set(found.entries);
+        },
+        (error) => {
+          if (!gone) fail(reasonOf(error));
+        },
       );
     return () => {
       gone = true;
@@ -92,17 +123,18 @@ function Around({ name, visit, moment, chosen, choose, change }) {
     }</${Part}>`;
 }
 
+/** @param {{ name: string }} props */
 export default function DayPage({ name }) {
   useRedraw();
   const [date, pick] = useState(""),
-    [day, set] = useState(null),
+    [day, set] = useState(/** @type {Day | null} */ (null)),
     [failed, fail] = useState("");
-  const [visit, choose] = useState(null),
+  const [visit, choose] = useState(/** @type {Stretch | null} */ (null)),
     [moment, move] = useState(Date.now()),
-    [chosen, mark] = useState(null),
+    [chosen, mark] = useState(/** @type {Written | null} */ (null)),
     [asked, change] = useState(0);
   const instead = () => change((before) => before + 1); // each time, the form begins anew
-  const look = (one) => {
+  const look = (/** @type {Stretch} */ one) => {
     choose(one);
     move(Date.parse(one.began));
     mark(null);
@@ -111,14 +143,16 @@ export default function DayPage({ name }) {
     let gone = false;
     fail("");
     get("/api/day", { robot: name, date }, JOB).then(
-      (found) => {
+      (/** @type {Day} */ found) => {
         if (gone) return;
         (set(found), mark(null));
         const last = found.visits.at(-1) ?? stretches(found).at(-1);
         if (last) look(last);
         else choose(null);
       },
-      (error) => gone || fail(reasonOf(error)),
+      (error) => {
+        if (!gone) fail(reasonOf(error));
+      },
     );
     return () => {
       gone = true;
@@ -131,7 +165,7 @@ export default function DayPage({ name }) {
       gone = false;
     const look = () =>
       get("/api/day", { robot: name }, JOB).then(
-        (found) => {
+        (/** @type {Day} */ found) => {
           looked = Date.now();
           if (!gone) set((shown) => (shown?.date === found.date ? found : shown));
         },
@@ -151,13 +185,13 @@ export default function DayPage({ name }) {
       leave();
     };
   }, [date]);
-  const scrub = (at) => {
+  const scrub = (/** @type {number} */ at) => {
     (move(at), mark(null));
     const inside = parts.filter((one) => Date.parse(one.began) <= at).at(-1) ?? parts[0];
     if (inside && inside.from !== visit?.from) choose(inside);
   };
   const parts = day ? stretches(day) : [];
-  const open = (entry) => {
+  const open = (/** @type {Written} */ entry) => {
     choose(parts.filter((one) => one.from <= entry.position).at(-1) ?? parts[0]);
     (mark(entry), move(Date.parse(entry.at_time)));
   };
@@ -167,7 +201,7 @@ export default function DayPage({ name }) {
   if (!day) return html`<p class="notice">${t("loading")}</p>`;
   return html`<div class="page-head"><h1>${t("page.day")}</h1>
       <label><span>${t("day.date")}</span><select class="date" value=${day.date}
-        onChange=${(e) => pick(e.target.value)}>
+        onChange=${(/** @type {Event} */ e) => pick(valueOf(e))}>
         ${[...new Set([...(day.dates ?? []), day.date])].sort().map(
           (one) => html`
           <option value=${one} selected=${one === day.date}>${one}</option>`,
@@ -181,7 +215,9 @@ export default function DayPage({ name }) {
     <${Line} day=${day} bounds=${bounds(day)} visit=${shown} moment=${moment} scrub=${scrub} look=${look} />
     <${Find} name=${name} date=${day.date} parts=${parts} scrub=${scrub} open=${open} />
     <div class="day"><${Visits} day=${day} visit=${shown} choose=${look} />
-      <${Around} name=${name} visit=${shown} moment=${moment} chosen=${chosen} change=${instead} choose=${(entry) => {
+      <${Around} name=${name} visit=${shown} moment=${moment} chosen=${chosen} change=${instead} choose=${(
+        /** @type {Written} */ entry,
+      ) => {
         mark(entry);
         change(0);
         move(Date.parse(entry.at_time));

@@ -1,14 +1,21 @@
+// @ts-check
 // What visitors said, and which row of `hears` took it; an author says which one should have, and it becomes a saying.
+/** @import { Heard } from "../types" */
 import { Quote, reasonOf } from "../quoted.js";
 import { may } from "../session.js";
-import { fixed, html, languageName, t, useEffect, useRef, useState } from "../ui.js";
+import { fixed, html, languageName, t, useEffect, useRef, useState, valueOf } from "../ui.js";
 
-/** The rows that could have taken a sentence, as the values of a choice. */
+/**
+ * The rows that could have taken a sentence, as the values of a choice.
+ * @param {Heard} one
+ * @param {Record<string, string[]>} rows
+ */
 const choices = (one, rows) =>
   one.states.flatMap(([behavior, state]) =>
     (rows[`${behavior} ${state}`] ?? []).map((row) => ({ behavior, state, row })),
   );
 
+/** @param {{ name: string, one: Heard, rows: Record<string, string[]>, saved: (file: string) => void }} props */
 function Row({ name, one, rows, saved }) {
   const could = choices(one, rows),
     several = one.states.length > 1;
@@ -17,11 +24,11 @@ function Row({ name, one, rows, saved }) {
     [chosen, choose] = useState(""),
     [busy, wait] = useState(false),
     [wrong, complain] = useState("");
-  const field = useRef(null);
+  const field = useRef(/** @type {HTMLSelectElement | null} */ (null));
   const states = one.states.map(([, state]) => state).join(", ");
   const about = [states, one.row || t("day.said.none"), languageName(one.language), `${fixed(one.count)}×`];
   useEffect(() => field.current?.focus(), [open]);
-  const save = async (submitted) => {
+  const save = async (/** @type {SubmitEvent} */ submitted) => {
     submitted.preventDefault();
     (wait(true), complain(""));
     try {
@@ -50,23 +57,24 @@ function Row({ name, one, rows, saved }) {
     ${
       open &&
       html`<form class="cue" onSubmit=${save}><label><span>${t("day.said.row")}</span>
-        <select ref=${field} value=${chosen} onChange=${(e) => choose(e.target.value)} required><option value="">
+        <select ref=${field} value=${chosen} onChange=${(/** @type {Event} */ e) => choose(valueOf(e))} required><option value="">
         </option>
       ${could.map(
         ({ state, row }, n) => html`<option value=${n}
         selected=${`${n}` === chosen}>${several ? `${row} (${state})` : row}</option>`,
       )}</select></label>
       <label class="grow"><span>${t("day.said.text")} (${languageName(one.language)})</span>
-        <input value=${text} onInput=${(e) => setText(e.target.value)} maxlength="1000" required autocomplete="off" />
+        <input value=${text} onInput=${(/** @type {Event} */ e) => setText(valueOf(e))} maxlength="1000" required autocomplete="off" />
         </label>
       <button class="strong" disabled=${busy}>${t("day.passage.save")}</button></form>`
     }
     <p class="bad" role="alert"><${Quote} text=${wrong} /></p></li>`;
 }
 
+/** @param {{ name: string, said: Heard[], rows: Record<string, string[]> }} props */
 export function Said({ name, said, rows }) {
-  const [files, tell] = useState({}),
-    key = (one) => JSON.stringify([one.language, one.text, one.states]);
+  const [files, tell] = useState(/** @type {Record<string, string>} */ ({})),
+    key = (/** @type {Heard} */ one) => JSON.stringify([one.language, one.text, one.states]);
   const left = said.filter((one) => !files[key(one)]),
     file = Object.values(files).at(-1);
   return (
@@ -77,7 +85,7 @@ export function Said({ name, said, rows }) {
       html`<ul class="plain-list bounded" tabindex="0"
       aria-label=${t("day.said")}>${left.map(
         (one) => html`<${Row} key=${key(one) + one.row} name=${name} one=${one}
-      rows=${rows} saved=${(file) => tell((before) => ({ ...before, [key(one)]: file }))} />`,
+      rows=${rows} saved=${(/** @type {string} */ file) => tell((before) => ({ ...before, [key(one)]: file }))} />`,
       )}</ul>`
     }
     <p role="status">${file ? t("day.passage.saved", { file }) : ""}</p></section>`

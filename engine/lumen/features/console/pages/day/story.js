@@ -1,8 +1,16 @@
+// @ts-check
 // Keep as a test: a visit becomes a story of the project, in which the visitor has another name.
+/** @import { Data, Stretch } from "../types" */
 import { JOB } from "../live.js";
 import { Quote, reasonOf } from "../quoted.js";
-import { Dialog, html, t, useState } from "../ui.js";
+import { Dialog, html, t, useState, valueOf } from "../ui.js";
 
+/**
+ * A visit that was kept: the file of the story, and a remark if it plays otherwise than it was.
+ * @typedef {{ file: string, remark?: string }} Kept
+ * @param {Data} body
+ * @returns {Promise<Kept>}
+ */
 async function keep(body) {
   const answer = await fetch("/api/stories", {
     method: "POST",
@@ -15,11 +23,12 @@ async function keep(body) {
   return said;
 }
 
+/** @param {{ name: string, visit: Stretch, onClose: () => void, kept: (one: Kept) => void }} props */
 function KeepDialog({ name, visit, onClose, kept }) {
   const [other, write] = useState(""),
     [wrong, complain] = useState(""),
     [busy, wait] = useState(false);
-  const save = async (submitted) => {
+  const save = async (/** @type {SubmitEvent} */ submitted) => {
     submitted.preventDefault();
     (complain(""), wait(true));
     try {
@@ -36,16 +45,19 @@ function KeepDialog({ name, visit, onClose, kept }) {
       ${
         visit.visitor &&
         html`<label>${t("story.name", { name: visit.visitor })}<input autofocus required maxlength="60"
-        autocomplete="off" value=${other} onInput=${(e) => write(e.target.value)} /></label>`
+        autocomplete="off" value=${other} onInput=${(/** @type {Event} */ e) => write(valueOf(e))} /></label>`
       }
       <p role="status">${busy ? t("loading") : ""}</p>
       <p class="bad" role="alert"><${Quote} text=${wrong} /></p></form></${Dialog}>`;
 }
 
-/** A button for a visit that is over, and what became of it. */
+/**
+ * A button for a visit that is over, and what became of it.
+ * @param {{ name: string, visit: Stretch }} props
+ */
 export function KeepStory({ name, visit }) {
   const [open, setOpen] = useState(false),
-    [found, tell] = useState(null);
+    [found, tell] = useState(/** @type {Kept | null} */ (null));
   return html`<div class="keep-story"><button type="button" onClick=${() => setOpen(true)}>${t("story.keep")}</button>
     <p role="status">${
       found &&

@@ -1,12 +1,16 @@
+// @ts-check
 // Files: what was saved, what is wrong in it, what it changes, and what it would have changed in the last visits.
+/** @import { Change as Changed, Diagnostic, Files, Replay as Replayed, Report } from "../types" */
 import { command } from "../commands.js";
 import { JOB, get, listen, robotOf } from "../live.js";
 import { InEnglish, Quote, reasonOf } from "../quoted.js";
 import { holds, may } from "../session.js";
 import { Dialog, Part, clock, fixed, html, place, t, useEffect, useRedraw, useState } from "../ui.js";
 
+/** @type {Record<string, string>} */
 const LEVELS = { error: "bad", warning: "warn", info: "kind" };
 
+/** @param {{ findings: Diagnostic[] }} props */
 function Findings({ findings }) {
   return html`<${Part} title=${t("files.findings")} kind="findings">${
     findings.length === 0
@@ -21,17 +25,30 @@ function Findings({ findings }) {
   }</${Part}>`;
 }
 
-/** What two texts begin and end with alike, and what differs between. */
+/**
+ * What two texts begin and end with alike, and what differs between.
+ * @typedef {[begin: string, middle: string, end: string]} Cut
+ * @param {string} was
+ * @param {string} now
+ * @returns {[was: Cut, now: Cut]}
+ */
 function differing(was, now) {
   let begin = 0,
     end = 0;
   while (begin < Math.min(was.length, now.length) && was[begin] === now[begin]) begin++;
   while (end < Math.min(was.length, now.length) - begin && was.at(-1 - end) === now.at(-1 - end)) end++;
+  /**
+   * @param {string} text
+   * @returns {Cut}
+   */
   const cut = (text) => [text.slice(0, begin), text.slice(begin, text.length - end), text.slice(text.length - end)];
   return [cut(was), cut(now)];
 }
 
-/** A change: what it is, where, and of a text all of it before and now, with what differs marked. */
+/**
+ * A change: what it is, where, and of a text all of it before and now, with what differs marked.
+ * @param {{ change: string, detail?: Changed }} props
+ */
 function Change({ change, detail }) {
   const [was, now] = differing(detail?.was ?? "", detail?.now ?? "");
   return html`<li><p>${change}</p>${detail && html`<p class="place">${place(detail.file, detail.line)}</p>`}
@@ -42,11 +59,14 @@ function Change({ change, detail }) {
 /**
  * The text for a report without changes: files with errors, or that nobody watches, were not compared with those that
  * run.
+ * @param {Partial<Report>} report
+ * @param {string | undefined} mode
  */
 const noChanges = (report, mode) => (mode === "off" || report.verdict === "refused" ? "files.unread" : "files.nothing");
 
+/** @param {{ report: Partial<Report>, mode?: string }} props */
 function Changes({ report, mode }) {
-  const changes = report.changes ?? [];
+  const { changes = [], restart = [] } = report;
   return html`<${Part} title=${t("files.diff")} kind="changes" aside=${
     report.risk &&
     html`<span class="badge"
@@ -62,12 +82,13 @@ function Changes({ report, mode }) {
         : html`<p class="quiet">${t(noChanges(report, mode))}</p>`
     }
     ${
-      report.restart?.length > 0 &&
+      restart.length > 0 &&
       html`<ul class="diff"
-      lang="en">${report.restart.map((line) => html`<li>${line}</li>`)}</ul>`
+      lang="en">${restart.map((line) => html`<li>${line}</li>`)}</ul>`
     }</${Part}>`;
 }
 
+/** @param {{ replay?: Replayed | null }} props */
 function Replay({ replay }) {
   if (!replay) return null;
   return html`<${Part} title=${t("files.replay")} kind="replay">
@@ -82,7 +103,11 @@ function Replay({ replay }) {
 
 const ASKED = new Set(["apply", "rollback"]); // what is asked once more before it is done
 
-/** A button of saved files: what it does is written below it, or why it can't be used now. */
+/**
+ * A button of saved files: what it does is written below it, or why it can't be used now.
+ * @typedef {{ strong?: boolean, grey?: string | null }} Shown
+ * @param {{ name: string, verb: string, label: string, ask: (verb: string) => void } & Shown} props
+ */
 function Action({ name, verb, label, strong = false, grey = null, ask }) {
   const press = () => grey === null && (ASKED.has(verb) ? ask(verb) : command(name, verb));
   return html`<li><button type="button" class=${strong ? "strong" : ""} data-verb=${verb}
@@ -90,16 +115,21 @@ function Action({ name, verb, label, strong = false, grey = null, ask }) {
     <p class="reason">${grey ?? t(`${label}.does`)}</p></li>`;
 }
 
+/** @param {{ name: string, files: Partial<Files> }} props */
 function Actions({ name, files }) {
-  const [asking, ask] = useState(null);
+  const [asking, ask] = useState(/** @type {string | null} */ (null));
   const waits = Boolean(files.staged?.length || files.waiting);
   const nothing = waits ? null : t(files.mode === "off" ? "files.grey.off" : "files.grey.nothing");
   const keeps = Boolean(files.trial) && !waits; // newer files that wait are what Apply means
   const go = () => {
-    command(name, asking);
+    if (asking) command(name, asking);
     ask(null);
   };
-  const action = (verb, label, more = {}) => html`<${Action} name=${name} verb=${verb} label=${label} ask=${ask}
+  const action = (
+    /** @type {string} */ verb,
+    /** @type {string} */ label,
+    /** @type {Shown} */ more = {},
+  ) => html`<${Action} name=${name} verb=${verb} label=${label} ask=${ask}
     ...${more} />`;
   return html`<ul class="file-actions">
       ${action("dry-run", "files.look")}${action("reload", "files.read")}
@@ -116,9 +146,10 @@ function Actions({ name, files }) {
     }`;
 }
 
+/** @param {{ name: string }} props */
 export default function FilesPage({ name }) {
   useRedraw();
-  const [files, set] = useState(null),
+  const [files, set] = useState(/** @type {Partial<Files> | null} */ (null)),
     [failed, fail] = useState("");
   const known = JSON.stringify([robotOf(name)?.files, robotOf(name)?.last_reload]);
   const look = () =>
@@ -132,7 +163,13 @@ export default function FilesPage({ name }) {
   useEffect(() => {
     look();
   }, [known]);
-  useEffect(() => listen((kind) => kind === "command" && look()), []);
+  useEffect(
+    () =>
+      listen((...[kind]) => {
+        if (kind === "command") look();
+      }),
+    [],
+  );
   if (!files && !failed) return html`<p class="notice">${t("loading")}</p>`;
   if (!files)
     return html`<h1>${t("page.files")}</h1><p class="notice bad" role="alert"><${Quote} text=${failed} /></p>`;

@@ -1,13 +1,18 @@
+// @ts-check
 // Many houses: their robots, the steps of a rollout, and what stops it.
+/** @import { Fleet, FleetRobot, House as Home, Rollout as Rolled } from "../types" */
 import { get } from "../live.js";
 import { Quote, inPageLanguage, reasonOf } from "../quoted.js";
 import { may } from "../session.js";
 import { Dialog, Part, fixed, html, span, t, useEffect, useState } from "../ui.js";
 
 const PERIOD = 2000; // [ms] how often the centre is asked
+/** @type {Record<string, string>} */
 const LEVELS = { proved: "open", away: "warn", unknown: "warn", refused: "bad", "rolled back": "bad", edited: "warn" };
+/** @type {Record<string, string>} */
 const VERDICTS = { going: "open", finished: "open", aborted: "bad", paused: "warn", "a person decides": "warn" };
 
+/** @param {string} decision */
 async function decide(decision) {
   const answer = await fetch("/api/fleet", {
     method: "POST",
@@ -17,6 +22,7 @@ async function decide(decision) {
   if (!answer.ok) throw new Error((await answer.json()).reason);
 }
 
+/** @param {{ rollout: Rolled }} props */
 function Steps({ rollout }) {
   return html`<ol class="steps">${rollout.steps.map((step, i) => {
     const now = i === rollout.step && !step.done;
@@ -33,6 +39,7 @@ function Steps({ rollout }) {
   })}</ol>`;
 }
 
+/** @param {{ rollout: Rolled, act: (decision: string) => void }} props */
 function Actions({ rollout, act }) {
   const [asking, ask] = useState(false);
   const waits = rollout.state !== "going";
@@ -50,6 +57,7 @@ function Actions({ rollout, act }) {
     }`;
 }
 
+/** @param {{ rollout: Rolled | null, act: (decision: string) => void }} props */
 function Rollout({ rollout, act }) {
   if (!rollout)
     return html`<${Part} title=${t("fleet.rollout")} kind="rollout"><p class="quiet">${t("fleet.none")}</p></${Part}>`;
@@ -63,6 +71,7 @@ function Rollout({ rollout, act }) {
     ${under && may("operator") && html`<${Actions} rollout=${rollout} act=${act} />`}</${Part}>`;
 }
 
+/** @param {{ house: Home, robots: FleetRobot[] }} props */
 function House({ house, robots }) {
   return html`<${Part} title=${house.name} kind="house" aside=${html`<span
     class="quiet">${t("fleet.here", { here: house.here, robots: house.robots })}</span>`}>
@@ -79,7 +88,7 @@ function House({ house, robots }) {
 }
 
 export default function FleetPage() {
-  const [fleet, set] = useState(null),
+  const [fleet, set] = useState(/** @type {Fleet | null} */ (null)),
     [failed, fail] = useState("");
   const look = () =>
     get("/api/fleet").then(
@@ -94,7 +103,7 @@ export default function FleetPage() {
     const timer = setInterval(look, PERIOD);
     return () => clearInterval(timer);
   }, []);
-  const act = (decision) => decide(decision).then(look, (error) => fail(reasonOf(error)));
+  const act = (/** @type {string} */ decision) => decide(decision).then(look, (error) => fail(reasonOf(error)));
   const here = (fleet?.robots ?? []).filter((one) => one.here).length;
   const trouble = failed || fleet?.trouble || fleet?.centre?.overruled;
   return html`<h1>${t("page.fleet")}</h1>

@@ -1,5 +1,7 @@
+// @ts-check
 // Transitions that wait for a person's GO, with the time after which they go or don't; and how far the robot goes
 // alone.
+/** @import { Approval, Deed, Robot } from "../types" */
 import { command } from "../commands.js";
 import { Place, Values } from "../places.js";
 import { inPageLanguage } from "../quoted.js";
@@ -7,13 +9,19 @@ import { may } from "../session.js";
 import { Part, Until, Usable, html, t } from "../ui.js";
 import { isHere } from "../live.js";
 
-/** What a command of a robot is called: its verb, and the first text that says which. */
+/**
+ * What a command of a robot is called: its verb, and the first text that says which.
+ * @param {Deed} deed
+ */
 function named({ verb, ...fields }) {
   const which = Object.values(fields).find((one) => typeof one === "string");
   return [inPageLanguage(verb), which].join(" ");
 }
 
-/** What a person decides on: the visitor's words or other data, what the robot will do, and what happens by itself. */
+/**
+ * What a person decides on: the visitor's words or other data, what the robot will do, and what happens by itself.
+ * @param {{ robot: Robot, one: Approval }} props
+ */
 function Matter({ robot, one }) {
   const { result, ...data } = one.data ?? {},
     would = one.would ?? [];
@@ -41,8 +49,9 @@ function Matter({ robot, one }) {
     }</p>`;
 }
 
+/** @param {{ robot: Robot, one: Approval }} props */
 function Waiting({ robot, one }) {
-  const answer = (go) =>
+  const answer = (/** @type {boolean} */ go) =>
     command(
       robot.robot,
       "approve",
@@ -58,6 +67,7 @@ function Waiting({ robot, one }) {
       <button type="button" onClick=${() => answer(false)}>${t("approve.stay")}</button></div></${Usable}></li>`;
 }
 
+/** @param {{ robot: Robot }} props */
 export function Approvals({ robot }) {
   const waiting = robot.waiting ?? [];
   return html`<div role="status"
@@ -70,10 +80,13 @@ export function Approvals({ robot }) {
     }`;
 }
 
-/** Whether transitions that are marked wait for a person. */
+/**
+ * Whether transitions that are marked wait for a person.
+ * @param {{ robot: Robot }} props
+ */
 export function Autonomy({ robot }) {
   if (!robot.autonomy || !may("operator")) return null;
-  const set = (level) =>
+  const set = (/** @type {string} */ level) =>
     level !== robot.autonomy && command(robot.robot, "autonomy", { level }, t(`autonomy.${level}`));
   return html`<fieldset class="choice"><legend>${t("autonomy")}</legend>${["ask", "alone"].map(
     (level) => html`<label>
@@ -82,10 +95,13 @@ export function Autonomy({ robot }) {
   )}</fieldset>`;
 }
 
-/** Whether a language model may answer visitors. */
+/**
+ * Whether a language model may answer visitors.
+ * @param {{ robot: Robot }} props
+ */
 export function Model({ robot }) {
   if (!robot.model || !may("operator")) return null;
-  const set = (on) =>
+  const set = (/** @type {boolean} */ on) =>
     on !== (robot.model === "on") &&
     command(robot.robot, "model", { on }, `${t("model")} ${t(on ? "model.on" : "model.off")}`);
   return html`<fieldset class="choice"><legend>${t("model")}</legend>${[true, false].map(

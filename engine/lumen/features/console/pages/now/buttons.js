@@ -1,4 +1,6 @@
+// @ts-check
 // The buttons that the behaviour declares for the states it is in; held, asked or pressed at once, as declared.
+/** @import { Button as Declared, Robot } from "../types" */
 import { command } from "../commands.js";
 import { isHere } from "../live.js";
 import { inPageLanguage } from "../quoted.js";
@@ -7,10 +9,15 @@ import { Dialog, Part, html, inLanguage, t, useEffect, useRef, useState } from "
 
 const HELD = 1000; // [ms]
 
-/** A button as it can be used now: none while the robot does not answer. */
+/**
+ * A button as it can be used now: none while the robot does not answer.
+ * @param {Robot} robot
+ * @param {Declared} button
+ */
 const usable = (robot, button) =>
   isHere(robot) ? button : { ...button, enabled: false, reason: t("robot.silent", { name: robot.robot }) };
 
+/** @param {{ robot: Robot, button: Declared }} props */
 function Button({ robot, button: declared }) {
   const button = usable(robot, declared);
   const [held, hold] = useState(false),
@@ -18,12 +25,15 @@ function Button({ robot, button: declared }) {
     timer = useRef(0);
   const label = inLanguage(button.label);
   const press = () => command(robot.robot, "event", { event: button.event, data: button.data ?? null }, label);
-  const begin = (event) => {
+  const begin = (/** @type {KeyboardEvent | PointerEvent} */ event) => {
     if (button.confirm !== "hold" || !button.enabled || timer.current) return;
-    if (event.type === "keydown" && (event.repeat || !["Enter", " "].includes(event.key))) return;
-    if (event.type === "keydown") event.preventDefault();
-    // It is held, wherever it moves.
-    if (event.pointerId !== undefined) event.currentTarget.setPointerCapture(event.pointerId);
+    if (event instanceof KeyboardEvent) {
+      if (event.repeat || !["Enter", " "].includes(event.key)) return;
+      event.preventDefault();
+    } else {
+      // It is held, wherever it moves.
+      /** @type {HTMLElement} */ (event.currentTarget).setPointerCapture(event.pointerId);
+    }
     hold(true);
     timer.current = setTimeout(() => {
       end();
@@ -42,9 +52,9 @@ function Button({ robot, button: declared }) {
   useEffect(() => end, []);
   useEffect(() => {
     if (!button.key) return undefined;
-    const typed = (event) => {
+    const typed = (/** @type {KeyboardEvent} */ event) => {
       if (event.key !== button.key || event.repeat || event.ctrlKey || event.metaKey || event.altKey) return;
-      if (event.target.closest("input, textarea, select, dialog")) return;
+      if (/** @type {Element} */ (event.target).closest("input, textarea, select, dialog")) return;
       event.preventDefault();
       if (!button.enabled) return;
       if (button.confirm === "hold") {
@@ -55,7 +65,7 @@ function Button({ robot, button: declared }) {
         }, HELD);
       } else click();
     };
-    const released = (event) => {
+    const released = (/** @type {KeyboardEvent} */ event) => {
       if (event.key === button.key) end();
     };
     addEventListener("keydown", typed);
@@ -75,7 +85,7 @@ function Button({ robot, button: declared }) {
       aria-description=${describing} aria-keyshortcuts=${button.key || null} onClick=${click}
       onPointerDown=${begin} onPointerUp=${end} onPointerLeave=${end} onPointerCancel=${end} onKeyDown=${begin}
         onKeyUp=${end} onBlur=${end}
-      onContextMenu=${(event) => event.preventDefault()}>
+      onContextMenu=${(/** @type {Event} */ event) => event.preventDefault()}>
       <span>${label}</span>${button.key && html`<kbd aria-hidden="true">${button.key}</kbd>`}
       ${
         button.confirm === "hold" &&
@@ -95,6 +105,7 @@ function Button({ robot, button: declared }) {
     }</li>`;
 }
 
+/** @param {{ robot: Robot }} props */
 export function Buttons({ robot }) {
   const buttons = robot.buttons ?? [];
   return html`<${Part} title=${t("buttons")} kind="buttons">

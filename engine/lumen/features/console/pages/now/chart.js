@@ -1,17 +1,27 @@
+// @ts-check
 // The chart of the behaviour that runs, drawn: the active states, and those that were active before.
+/** @import { Chart as Drawn, ChartBox, Robot, State } from "../types" */
 import { JOB, get, live } from "../live.js";
 import { Quote, reasonOf } from "../quoted.js";
 import { Part, html, t, useEffect, useState } from "../ui.js";
 
 const MARGIN = 16; // [px]
 
-/** The paths of all active states of a tree. */
+/**
+ * The paths of all active states of a tree.
+ * @param {State[]} states
+ * @returns {string[]}
+ */
 const paths = (states) => states.flatMap((one) => [one.path, ...paths(one.children ?? [])]);
 
-/** The names of the states that this robot entered, as far as the page has seen it. */
+/**
+ * The names of the states that this robot entered, as far as the page has seen it.
+ * @param {Robot} robot
+ */
 const entered = (robot) =>
   new Set(live.entries.filter((one) => one.robot === robot.robot).flatMap((one) => one.entered ?? []));
 
+/** @param {{ box: ChartBox, active: boolean, been: boolean }} props */
 function Box({ box, active, been }) {
   const [x, y] = box.text,
     radius = box.final ? 4 : 9;
@@ -27,12 +37,13 @@ function Box({ box, active, been }) {
     ${box.rows.map((row) => html`<text x=${x} y=${row.y}>${row.text}</text>`)}</g>`;
 }
 
+/** @param {{ chart: Drawn, robot: Robot }} props */
 function Drawing({ chart, robot }) {
   const active = new Set(paths(robot.states ?? [])),
     been = entered(robot);
   const named = chart.boxes.filter((box) => box.leaf && active.has(box.path)).map((box) => box.title);
   const view = [-MARGIN, -MARGIN, chart.width + 2 * MARGIN, chart.height + 2 * MARGIN].join(" ");
-  const box = (one) => html`<${Box} key=${one.path} box=${one} active=${active.has(one.path)}
+  const box = (/** @type {ChartBox} */ one) => html`<${Box} key=${one.path} box=${one} active=${active.has(one.path)}
     been=${been.has(one.name)} />`;
   return html`<div class="chart-scroll" tabindex="0" role="group" aria-label=${t("chart")}>
     <svg class="state-chart" viewBox=${view} role="img" aria-label="${t("chart.active")}: ${named.join(", ")}"
@@ -44,9 +55,12 @@ function Drawing({ chart, robot }) {
       ${chart.boxes.filter((one) => one.leaf).map(box)}</svg></div>`;
 }
 
-/** Asked for when it is opened, and again when other files run. */
+/**
+ * Asked for when it is opened, and again when other files run.
+ * @param {{ robot: Robot }} props
+ */
 function Chart({ robot }) {
-  const [chart, set] = useState(null),
+  const [chart, set] = useState(/** @type {Drawn | null} */ (null)),
     [wrong, complain] = useState("");
   useEffect(() => {
     let gone = false;
@@ -57,7 +71,9 @@ function Chart({ robot }) {
           complain("");
         }
       },
-      (error) => gone || complain(reasonOf(error)),
+      (error) => {
+        if (!gone) complain(reasonOf(error));
+      },
     );
     return () => {
       gone = true;
@@ -68,6 +84,7 @@ function Chart({ robot }) {
     ${chart && html`<p class="quiet">${t("chart.more")}</p><${Drawing} chart=${chart} robot=${robot} />`}`;
 }
 
+/** @param {{ robot: Robot }} props */
 export function BehaviorChart({ robot }) {
   const [open, set] = useState(false);
   return html`<${Part} title=${t("chart")} kind="chart-part" aside=${html`

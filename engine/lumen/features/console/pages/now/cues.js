@@ -1,18 +1,24 @@
+// @ts-check
 // Cues of an author: any motion, posture, state or event, whatever the behaviour is doing.
+/** @import { Robot } from "../types" */
 import { command } from "../commands.js";
-import { Part, html, t, useState } from "../ui.js";
+import { Part, html, t, useState, valueOf } from "../ui.js";
 
+/**
+ * A motion, a posture or a state; `free` if its name is typed.
+ * @param {{ robot: Robot, kind: string, names: string[], field: string, free?: boolean }} props
+ */
 function Cue({ robot, kind, names, field, free = false }) {
   const [chosen, choose] = useState(names[0] ?? "");
-  const send = (event) => {
+  const send = (/** @type {SubmitEvent} */ event) => {
     event.preventDefault();
     if (chosen) command(robot.robot, kind, { [field]: chosen }, `${t(`command.${kind}`)} ${chosen}`);
   };
   return html`<form class="cue" onSubmit=${send}><label class="grow"><span>${t(`cue.${kind}`)}</span>
     ${
       free
-        ? html`<input value=${chosen} onInput=${(e) => choose(e.target.value)} autocomplete="off" />`
-        : html`<select value=${chosen} onChange=${(e) => choose(e.target.value)}>${names.map(
+        ? html`<input value=${chosen} onInput=${(/** @type {Event} */ e) => choose(valueOf(e))} autocomplete="off" />`
+        : html`<select value=${chosen} onChange=${(/** @type {Event} */ e) => choose(valueOf(e))}>${names.map(
             (name) => html`<option
           value=${name} selected=${name === chosen}>${name}</option>`,
           )}</select>`
@@ -20,11 +26,12 @@ function Cue({ robot, kind, names, field, free = false }) {
     <button>${t(`cue.${kind}.send`)}</button></form>`;
 }
 
+/** @param {{ robot: Robot }} props */
 function EventCue({ robot }) {
   const [name, choose] = useState(robot.events?.[0] ?? ""),
     [data, set] = useState("{}"),
     [wrong, tell] = useState("");
-  const send = (event) => {
+  const send = (/** @type {SubmitEvent} */ event) => {
     event.preventDefault();
     let body = null;
     try {
@@ -36,20 +43,22 @@ function EventCue({ robot }) {
     command(robot.robot, "event", { event: name, data: body }, `${t("command.event")} ${name}`);
   };
   return html`<form class="cue" onSubmit=${send}><label class="grow"><span>${t("cue.event")}</span>
-      <select value=${name} onChange=${(e) => choose(e.target.value)}>${(robot.events ?? []).map(
+      <select value=${name} onChange=${(/** @type {Event} */ e) => choose(valueOf(e))}>${(robot.events ?? []).map(
         (one) => html`<option
         value=${one} selected=${one === name}>${one}</option>`,
       )}</select></label>
     <label class="grow"><span>${t("cue.data")}</span><input class="code" value=${data}
-      onInput=${(e) => set(e.target.value)} aria-invalid=${wrong ? "true" : null} autocomplete="off"
+      onInput=${(/** @type {Event} */ e) => set(valueOf(e))} aria-invalid=${wrong ? "true" : null} autocomplete="off"
       spellcheck=${false} /></label>
     <button>${t("cue.event.send")}</button><p class="bad" role="alert">${wrong}</p></form>`;
 }
 
+/** @param {{ robot: Robot }} props */
 export function Cues({ robot }) {
+  const { motions = [], postures = [], events = [] } = robot;
   return html`<${Part} title=${t("cues")} kind="cues">
-    ${robot.motions?.length > 0 && html`<${Cue} robot=${robot} kind="motion" field="name" names=${robot.motions} />`}
-    ${robot.postures?.length > 0 && html`<${Cue} robot=${robot} kind="posture" field="name" names=${robot.postures} />`}
+    ${motions.length > 0 && html`<${Cue} robot=${robot} kind="motion" field="name" names=${motions} />`}
+    ${postures.length > 0 && html`<${Cue} robot=${robot} kind="posture" field="name" names=${postures} />`}
     <${Cue} robot=${robot} kind="goto" field="state" names=${[]} free />
-    ${robot.events?.length > 0 && html`<${EventCue} robot=${robot} />`}</${Part}>`;
+    ${events.length > 0 && html`<${EventCue} robot=${robot} />`}</${Part}>`;
 }

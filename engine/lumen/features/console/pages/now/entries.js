@@ -1,4 +1,6 @@
+// @ts-check
 // The latest of what happened; each opens its why.
+/** @import { Entry as Written, Link as Cause, Robot } from "../types" */
 import { JOB, get, live } from "../live.js";
 import { Place, Values } from "../places.js";
 import { InEnglish, Quote, reasonOf, translated } from "../quoted.js";
@@ -9,14 +11,20 @@ import { isTrouble } from "./troubles.js";
 
 const SHOWN = 80;
 
-/** The text of a link without a guard and without data: for people who write no files. */
+/**
+ * The text of a link without a guard and without data: for people who write no files.
+ * @param {string} text
+ */
 function plainly(text) {
   const heard = /^heard \{"result": "((?:[^"\\]|\\.)*)"/.exec(text);
   if (heard) return `heard “${heard[1].replaceAll('\\"', '"')}”`;
   return text.replace(/, as (?!soon as possible)[^]*$/, "").replace(/ \{[^]*\}$/, "");
 }
 
-/** What of a chain a person is shown: an author all of it, others no messages of the bus, guards or data. */
+/**
+ * What of a chain a person is shown: an author all of it, others no messages of the bus, guards or data.
+ * @param {Cause[]} chain
+ */
 const shownOf = (chain) =>
   may("author")
     ? chain
@@ -24,6 +32,7 @@ const shownOf = (chain) =>
         .filter((link) => link.kind !== "message")
         .map((link) => ({ ...link, text: plainly(link.text), values: null }));
 
+/** @param {{ link: Cause }} props */
 function Link({ link }) {
   return html`<li class="link"><p><span class="badge" data-state="kind">${t(`kind.${link.kind}`)}</span>
       ${" "}<${Quote} text=${link.text} named=${false} /></p>
@@ -31,9 +40,12 @@ function Link({ link }) {
     <${Values} values=${link.values} /></li>`;
 }
 
-/** Why something was done: asked of the robot when it opens. */
+/**
+ * Why something was done: asked of the robot when it opens.
+ * @param {{ robot: string, what: string, at: string, text: string, onClose: () => void }} props
+ */
 export function Why({ robot, what, at, text, onClose }) {
-  const [found, set] = useState(null),
+  const [found, set] = useState(/** @type {{ chain: Cause[] } | null} */ (null)),
     [failed, fail] = useState("");
   const then = new Date(Date.parse(at) + 1).toISOString(); // what happened within that millisecond is meant, too
   useEffect(() => {
@@ -59,12 +71,17 @@ export function Why({ robot, what, at, text, onClose }) {
     }</${Dialog}>`;
 }
 
-/** What `lumen why` is asked about for an entry: what it said, else what it did, else the state it entered. */
+/**
+ * What `lumen why` is asked about for an entry: what it said, else what it did, else the state it entered.
+ * @param {Written} entry
+ * @returns {string}
+ */
 export function question(entry) {
   const begun = (entry.commands ?? []).map((one) => one.Start).filter(Boolean);
   return (begun.find((one) => one.command?.Say) ?? begun[0])?.id ?? entry.entered?.at(-1) ?? "";
 }
 
+/** @param {{ entry: Written, onOpen: (entry: Written) => void, current?: boolean }} props */
 export function Entry({ entry, onOpen, current = false }) {
   return html`<li class="entry" data-kind=${entry.kind} data-trouble=${isTrouble(entry) || null}>
     <button type="button" aria-current=${current ? "true" : null} onClick=${() => onOpen(entry)}>
@@ -73,8 +90,9 @@ export function Entry({ entry, onOpen, current = false }) {
       </button></li>`;
 }
 
+/** @param {{ robot: Robot }} props */
 export function Entries({ robot }) {
-  const [opened, open] = useState(null);
+  const [opened, open] = useState(/** @type {Written | null} */ (null));
   const mine = live.told
     .filter((entry) => entry.robot === robot.robot)
     .slice(-SHOWN)

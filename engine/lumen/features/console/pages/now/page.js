@@ -1,3 +1,4 @@
+// @ts-check
 // Now: where the behaviour is, what it says, what may come, and how the robot is.
 import { isHere, robotOf } from "../live.js";
 import { may } from "../session.js";
@@ -14,10 +15,14 @@ import { Lines, Talk } from "./talk.js";
 import { Troubles } from "./troubles.js";
 import { Ways } from "./ways.js";
 
-/** The buttons are below parts of a fixed height: what is pressed does not move when somebody speaks. */
+/**
+ * The buttons are below parts of a fixed height: what is pressed does not move when somebody speaks.
+ * @param {{ name: string }} props
+ */
 export function NowPage({ name }) {
   useRedraw();
   const robot = robotOf(name);
+  if (!robot) return null;
   return html`<h1 class="hidden">${t("page.now")}: ${name}</h1>
     <${Troubles} robot=${robot} />
     <${Situation} robot=${robot} />

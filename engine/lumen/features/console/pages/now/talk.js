@@ -1,14 +1,38 @@
+// @ts-check
 // The conversation: its last lines, what the robot says and does now, and a text for it to say.
+/** @import { Entry, Robot } from "../types" */
 import { command } from "../commands.js";
 import { isHere, live } from "../live.js";
 import { inPageLanguage } from "../quoted.js";
 import { may } from "../session.js";
-import { Part, Since, Usable, clock, html, languageName, percent, t, useEffect, useRef, useState } from "../ui.js";
+import {
+  Part,
+  Since,
+  Usable,
+  clock,
+  html,
+  languageName,
+  percent,
+  t,
+  useEffect,
+  useRef,
+  useState,
+  valueOf,
+} from "../ui.js";
 import { Prepared, usePrepared } from "./prepared.js";
 
 const LINES = 10;
 
-/** The lines that an entry of the journal is in the conversation: what the visitor said, then what the robot says. */
+/**
+ * A line of the conversation: when, what, by the robot or a visitor, in which language, and how sure the ears were.
+ * @typedef {{ key: string, at: string, text: string, robot?: boolean, language?: string, sure?: number | null }} Spoken
+ */
+
+/**
+ * The lines that an entry of the journal is in the conversation: what the visitor said, then what the robot says.
+ * @param {Entry} entry
+ * @returns {Spoken[]}
+ */
 function linesOf({ position, at_time: at, data, heard, commands = [] }) {
   const speech = heard && typeof data?.result === "string";
   const words = speech ? [{ at, text: data.result, sure: data.confidence ?? null }] : [];
@@ -19,14 +43,17 @@ function linesOf({ position, at_time: at, data, heard, commands = [] }) {
   }));
 }
 
-/** The last lines: who spoke, when, and how sure the ears were. The list has one height, so nothing below it moves. */
+/**
+ * The last lines: who spoke, when, and how sure the ears were. The list has one height, so nothing below it moves.
+ * @param {{ robot: Robot }} props
+ */
 export function Lines({ robot }) {
-  const list = useRef(null),
+  const list = useRef(/** @type {HTMLOListElement | null} */ (null)),
     mine = live.told.filter((one) => one.robot === robot.robot);
   const lines = mine.flatMap(linesOf).slice(-LINES),
     last = lines.at(-1)?.key;
   useEffect(() => {
-    list.current.scrollTop = list.current.scrollHeight;
+    list.current?.scrollTo({ top: list.current.scrollHeight });
   }, [last]);
   return html`<${Part} title=${t("talk")} kind="lines-of-talk">
     <ol class="talk-lines" ref=${list} tabindex="0" aria-label=${t("talk")}>${lines.map(
@@ -43,18 +70,19 @@ export function Lines({ robot }) {
     )}</ol></${Part}>`;
 }
 
+/** @param {{ robot: Robot }} props */
 function SayForm({ robot }) {
   const languages = robot.languages?.length ? robot.languages : [robot.language ?? "en"];
   const [text, set] = useState(""),
-    [chosen, choose] = useState(null);
-  const spoken = chosen ?? robot.language ?? languages[0];
+    [chosen, choose] = useState(/** @type {string | null} */ (null));
+  const spoken = chosen ?? robot.language ?? languages[0] ?? "en";
   const prepared = usePrepared();
   const keep = () => text.trim() && prepared.keep({ text: text.trim(), language: spoken });
-  const say = (event) => {
+  const say = (/** @type {SubmitEvent} */ event) => {
     event.preventDefault();
     if (!text.trim()) return;
     // The text stays until the bus has it: one that was not sent is sent again, not typed again.
-    const sent = (state) => state === "sent" && set((now) => (now === text ? "" : now));
+    const sent = (/** @type {string} */ state) => state === "sent" && set((now) => (now === text ? "" : now));
     command(
       robot.robot,
       "say",
@@ -64,11 +92,11 @@ function SayForm({ robot }) {
     );
   };
   return html`<form class="say" onSubmit=${say}><label class="grow"><span>${t("say.text")}</span>
-      <input value=${text} maxlength="500" lang=${spoken} onInput=${(e) => set(e.target.value)} autocomplete="off" />
+      <input value=${text} maxlength="500" lang=${spoken} onInput=${(/** @type {Event} */ e) => set(valueOf(e))} autocomplete="off" />
         </label>
     ${
       languages.length > 1 &&
-      html`<label><span>${t("language")}</span><select value=${spoken} onChange=${(e) => choose(e.target.value)}>
+      html`<label><span>${t("language")}</span><select value=${spoken} onChange=${(/** @type {Event} */ e) => choose(valueOf(e))}>
       ${languages.map(
         (one) => html`<option value=${one}
         selected=${one === spoken}>${languageName(one)}</option>`,
@@ -79,6 +107,7 @@ function SayForm({ robot }) {
     <${Prepared} robot=${robot} prepared=${prepared} />`;
 }
 
+/** @param {{ robot: Robot }} props */
 export function Talk({ robot }) {
   const { saying, visitor_said: heard, motion, now } = robot;
   return html`<${Part} title=${t("talk.now")} kind="talk"

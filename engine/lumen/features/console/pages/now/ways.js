@@ -1,16 +1,20 @@
+// @ts-check
 // The ways out of the active states: sentences about what people can cause; for an author every transition.
+/** @import { Guard as Condition, Robot, Way as Out } from "../types" */
 import { Place, Values } from "../places.js";
 import { Quote, inPageLanguage } from "../quoted.js";
 import { may } from "../session.js";
 import { Part, html, t } from "../ui.js";
 import { next } from "./next.js";
 
+/** @param {{ guard: Condition, open: boolean }} props */
 function Guard({ guard, open }) {
   const truth = guard.true ? "true" : open ? "if" : "false"; // open: it is asked when the event comes
   return html`<p class="guard" data-true=${truth}><span class="truth">${t(`guard.${truth}`)}</span>
     <code>${guard.text}</code></p><${Values} values=${guard.values} />`;
 }
 
+/** @param {{ way: Out }} props */
 function Way({ way }) {
   const again = way.guard && way.why.includes(way.guard.text); // the reason is the guard, which is below
   return html`<li class="way" data-open=${way.open}>
@@ -23,6 +27,7 @@ function Way({ way }) {
     <p class="place">${t("way.from", { state: way.source })} <${Place} file=${way.file} line=${way.line} /></p></li>`;
 }
 
+/** @param {{ ways: Out[] }} props */
 function AllWays({ ways }) {
   const sorted = [...ways.filter((way) => way.open), ...ways.filter((way) => !way.open)];
   const count = t("ways.open", { open: ways.filter((way) => way.open).length, all: ways.length });
@@ -33,6 +38,7 @@ function AllWays({ ways }) {
     )}</ul></details>`;
 }
 
+/** @param {{ robot: Robot }} props */
 export function Ways({ robot }) {
   const ways = robot.ways ?? [],
     sentences = next(robot);

@@ -1,22 +1,26 @@
+// @ts-check
 // The robot in its hall, drawn from poses; where there is no WebGL, or nothing to draw, the camera stands in.
 import { Quote } from "../quoted.js";
 import { Part, html, t, useEffect, useRef, useState } from "../ui.js";
 import { follow, shape } from "./poses.js";
 
+/** @param {{ name: string, instead: (why: string, reason: string) => any }} props */
 export function Hall({ name, instead }) {
-  const canvas = useRef(null),
+  const canvas = useRef(/** @type {(HTMLCanvasElement & { scene?: unknown }) | null} */ (null)),
     [failed, fail] = useState(""),
     [moved, move] = useState(0),
     [trouble, say] = useState("");
   useEffect(() => {
-    if (!canvas.current) return undefined;
+    const there = canvas.current;
+    if (!there) return undefined;
     let end = () => {},
       over = false;
     (async () => {
       if (!document.createElement("canvas").getContext("webgl2")) return fail("see.nogl");
       const [{ Scene }, form] = await Promise.all([import("./scene.js"), shape(name)]);
       if (over) return undefined;
-      const scene = (canvas.current.scene = new Scene(canvas.current, form)); // tests ask it what is drawn
+      const scene = new Scene(there, form);
+      there.scene = scene; // tests ask it what is drawn
       const stop = follow(
         name,
         (links) => {

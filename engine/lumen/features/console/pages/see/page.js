@@ -1,3 +1,4 @@
+// @ts-check
 // See: what the robot's camera sees with what the eyes found in it, and the robot in its hall.
 import { robotOf } from "../live.js";
 import { Quote } from "../quoted.js";
@@ -12,17 +13,18 @@ const PATIENCE = 4000,
   AGAIN = 1000; // [ms] for a first picture, after one, and where there was none
 
 // Pictures are asked for one by one: each takes a connection for a moment, and not one of the browser's six for ever.
+/** @param {{ name: string }} props */
 function Camera({ name }) {
   const [state, set] = useState("waiting"),
     [number, show] = useState(0),
     timer = useRef(0);
-  const next = (after) => {
+  const next = (/** @type {number} */ after) => {
     clearTimeout(timer.current);
     timer.current = setTimeout(() => {
       if (!document.hidden) show((n) => n + 1);
     }, after);
   };
-  const got = (what, after) => {
+  const got = (/** @type {string} */ what, /** @type {number} */ after) => {
     if (what) set(what);
     next(after);
   };
@@ -51,10 +53,11 @@ function Camera({ name }) {
       <p>${named.length ? named.join(" · ") : html`<span class="quiet">${t("see.found.none")}</span>`}</p></${Part}>`;
 }
 
+/** @param {{ name: string }} props */
 export default function SeePage({ name }) {
   useRedraw();
   const [view, set] = useState(kept("lumen.see") ?? "camera");
-  const choose = (one) => {
+  const choose = (/** @type {string} */ one) => {
     keep("lumen.see", one);
     set(one);
   };
@@ -68,7 +71,10 @@ export default function SeePage({ name }) {
       view === "camera"
         ? html`<${Camera} name=${name} />`
         : html`<${Hall} name=${name}
-      instead=${(why, reason) => html`<p class="notice">${t(why)} ${reason && html`(<${Quote} text=${reason} />)`}</p>
+      instead=${(
+        /** @type {string} */ why,
+        /** @type {string} */ reason,
+      ) => html`<p class="notice">${t(why)} ${reason && html`(<${Quote} text=${reason} />)`}</p>
       <${Camera} name=${name} />`} />`
     }`;
 }

@@ -1,10 +1,15 @@
+// @ts-check
 // Draws links with their shapes on a floor. three.js does the drawing; a frame is drawn when something has moved.
+/** @import { Form, Pose, Shape } from "../types" */
 import * as THREE from "../vendor/three.js";
 
-const REACH = 1.1,
-  EYE = [1.02, 0.68, 0.62],
-  LOOK = [0, 0, 0.26]; // [m]
+const REACH = 1.1; // [m]
+/** @type {[x: number, y: number, z: number]} */
+const EYE = [1.02, 0.68, 0.62]; // [m]
+/** @type {[x: number, y: number, z: number]} */
+const LOOK = [0, 0, 0.26]; // [m]
 
+/** @type {Record<string, (size: [number, number, number]) => THREE.BufferGeometry>} */
 const MAKERS = {
   box: ([x, y, z]) => new THREE.BoxGeometry(2 * x, 2 * y, 2 * z),
   ellipsoid: ([x, y, z]) => new THREE.SphereGeometry(1, 24, 16).scale(x, y, z),
@@ -13,9 +18,12 @@ const MAKERS = {
   capsule: ([r, half]) => new THREE.CapsuleGeometry(r, 2 * half, 8, 24).rotateX(Math.PI / 2),
 };
 
-/** The geometry of a shape: half sizes and z along a capsule, as MuJoCo has them. */
+/**
+ * The geometry of a shape: half sizes and z along a capsule, as MuJoCo has them.
+ * @param {Shape} shape
+ */
 export function geometry({ kind, size, vertices, faces }) {
-  if (kind !== "mesh") return (MAKERS[kind] ?? MAKERS.ellipsoid)(size);
+  if (kind !== "mesh") return (MAKERS[kind] ?? MAKERS.ellipsoid)(/** @type {[number, number, number]} */ (size));
   const made = new THREE.BufferGeometry();
   made.setAttribute("position", new THREE.BufferAttribute(new Float32Array(vertices.flat()), 3));
   made.setIndex(faces.flat());
@@ -23,14 +31,27 @@ export function geometry({ kind, size, vertices, faces }) {
   return made;
 }
 
+/**
+ * @param {THREE.Object3D} object
+ * @param {number[]} position
+ * @param {number[]} rotation
+ */
 function place(object, [x, y, z], [w, i, j, k]) {
   object.position.set(x, y, z);
   object.quaternion.set(i, j, k, w);
 }
 
 export class Scene {
+  /**
+   * @param {HTMLCanvasElement} canvas
+   * @param {Form} form
+   */
   constructor(canvas, { links, stage }) {
-    ((this.canvas = canvas), (this.links = new Map()), (this.scene = new THREE.Scene()));
+    this.canvas = canvas;
+    /** @type {Map<string, THREE.Group>} */
+    this.links = new Map();
+    this.scene = new THREE.Scene();
+    this.asked = 0; // the next frame, if one is asked for
     this.robot = new THREE.Group();
     this.robot.visible = false; // until a pose puts the links where they belong: before that they are a heap
     this.scene.add(this.robot);
@@ -48,6 +69,7 @@ export class Scene {
     this.draw();
   }
 
+  /** @param {Form["stage"]} stage */
   floor(stage) {
     const [[left, right], [back, front]] = stage
       ? [stage.x, stage.y]
@@ -64,6 +86,7 @@ export class Scene {
     return new THREE.Group().add(ground, lines);
   }
 
+  /** @param {Form["links"][number]} link */
   add({ name, shapes }) {
     const link = new THREE.Group();
     for (const shape of shapes) {
@@ -84,16 +107,26 @@ export class Scene {
     this.robot.add(link);
   }
 
-  /** Put the links where a pose says; those that it does not name stay. */
+  /**
+   * Put the links where a pose says; those that it does not name stay.
+   * @param {Pose} links
+   */
   pose(links) {
-    for (const [name, at] of Object.entries(links))
-      if (this.links.has(name)) place(this.links.get(name), at.slice(0, 3), at.slice(3));
+    for (const [name, at] of Object.entries(links)) {
+      const link = this.links.get(name);
+      if (link) place(link, at.slice(0, 3), at.slice(3));
+    }
     this.robot.visible = true;
     this.draw();
   }
 
   listen() {
     // dragging turns the view; so do the arrow keys
+    /**
+     * @template {"pointermove" | "keydown"} Kind
+     * @param {Kind} kind
+     * @param {(event: HTMLElementEventMap[Kind]) => void} handler
+     */
     const on = (kind, handler) => this.canvas.addEventListener(kind, handler, { signal: this.moves.signal });
     this.canvas.tabIndex = 0;
     on("pointermove", (event) => {
@@ -103,7 +136,7 @@ export class Scene {
       }
     });
     on("keydown", (event) => {
-      const by = { ArrowLeft: -0.15, ArrowRight: 0.15 }[event.key];
+      const by = event.key === "ArrowLeft" ? -0.15 : event.key === "ArrowRight" ? 0.15 : 0;
       if (by) {
         event.preventDefault();
         this.turn += by;

@@ -1,14 +1,17 @@
+// @ts-check
 // Subtitles: what the robot says, for a screen beside it, in the visitor's language; it has no controls.
+/** @import { Saying } from "../types" */
 import { live, robotOf } from "../live.js";
 import { html, t, useEffect, useRedraw, useState } from "../ui.js";
 
 const STAYS = 4000; // [ms] that a sentence stays after it was said
 
+/** @param {{ name: string }} props */
 export default function Subtitles({ name }) {
   useRedraw();
   const robot = robotOf(name),
     said = robot?.saying ?? null;
-  const [shown, show] = useState(null);
+  const [shown, show] = useState(/** @type {Saying | null} */ (null));
   useEffect(() => {
     if (said) {
       show(said);

@@ -1,3 +1,4 @@
+// @ts-check
 // The texts of the pages in English. {name} is filled in; {count|robot|robots} is the singular or the plural.
 // Another language is a file in this folder, named in ../ui.js.
 export default {

@@ -1,3 +1,4 @@
+// @ts-check
 // Teks halaman dalam bahasa Indonesia.
 export default {
   "skip": "Langsung ke isi", "loading": "Memuat …", "close": "Tutup", "cancel": "Batal", "unknown": "tidak diketahui",

@@ -1,3 +1,4 @@
+// @ts-check
 // Sentences that the console and the engine send in English, each with its Indonesian. {0} is any text, which may be
 // one
 // of these sentences itself; {0#} is a number, {0_} a text without spaces. The first that fits counts. ../quoted.js
