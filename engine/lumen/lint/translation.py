@@ -61,6 +61,13 @@ def plain_texts(draft: ProjectDraft) -> Iterator[tuple[DocumentReport, NodePath]
                 yield report, path
 
 
+def spoken_places(draft: ProjectDraft) -> Iterator[tuple[DocumentReport, NodePath]]:
+    """Yield the place of each text that a robot says: without the labels of buttons and what visitors say."""
+    for report, path in _places(draft):
+        if path[0] == "lists" or (path[0] not in ("phrases", "questions") and path[-1] not in ("label", "phrases")):
+            yield report, path
+
+
 def switched_to(draft: ProjectDraft) -> set[str]:
     """Return the languages to which an action of some behaviour switches the robot."""
     actions = (site.step.action for machine in draft.behaviors.values() for site in action_sites(machine))

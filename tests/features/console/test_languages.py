@@ -70,7 +70,11 @@ def test_each_phrase_fills_in_what_it_finds() -> None:
 
 def test_each_reason_of_the_console_has_its_indonesian() -> None:
     known = {re.sub(r"\{\d[#_]?\}", "…", english) for english, _ in phrases()}
-    known |= {re.sub(r"`…` must be", f"`{name}` must be", one) for one in known for name in ("go", "on", "now", "keep")}
+    known |= {
+        re.sub(r"`…` must be", f"`{name}` must be", one)
+        for one in known
+        for name in ("go", "on", "now", "keep", "write")
+    }
     known |= {
         one.replace("`…` must be one of", f"`{name}` must be one of")
         for one in known

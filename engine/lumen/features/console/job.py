@@ -103,6 +103,20 @@ def story(pipe: AnswerPipe, root: Path, robot: str, position: int, visitor: str,
     yield orjson.dumps({"file": kept.file.as_posix(), "remark": kept.remark})
 
 
+def sentence(pipe: AnswerPipe, root: Path, robot: str, said: dict[str, Any], hint: dict[str, Any]) -> Iterator[bytes]:
+    """Answer with the places in the saved files at which a sentence that the robot said may be written."""
+    from lumen.features.console.written_sentences import SaidSentence, places
+
+    yield orjson.dumps(places(root, robot, SaidSentence(**said, **hint)))
+
+
+def wording(pipe: AnswerPipe, root: Path, robot: str, wanted: dict[str, Any], write: bool) -> Iterator[bytes]:
+    """Check a new wording of a sentence, and save it if `write`; answer with what lint finds."""
+    from lumen.features.console.rewording import NewWording, reword
+
+    yield orjson.dumps(reword(root, robot, NewWording.read(wanted), write=write))
+
+
 def shape(pipe: AnswerPipe, root: Path, robot: str) -> Iterator[bytes]:
     """Answer with the shapes of the robot's links, and its stage."""
     from lumen.features.console.drawing import Drawing
@@ -122,7 +136,7 @@ def poses(pipe: AnswerPipe, root: Path, robot: str) -> Iterator[bytes]:
 
 JOBS: dict[str, Callable[..., Iterable[bytes]]] = {
     "day": day, "entries": entries, "why": why, "replay": replay, "saying": saying, "story": story, "chart": chart,
-    "shape": shape, "poses": poses,
+    "sentence": sentence, "wording": wording, "shape": shape, "poses": poses,
 }  # fmt: skip
 
 

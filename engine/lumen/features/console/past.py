@@ -91,20 +91,23 @@ class Past:
         return await self._explained(request, WHY_NOT)
 
     async def _explained(self, request: Request, question: OperatorRequest) -> Response:
-        view = self._asked(request, Role.SHOW)
+        view = self.asked(request, Role.SHOW)
         what = request.query_params.get("what", "")[:MAX_QUESTION]
-        at = request.query_params.get("at") or None
+        return as_json(await self.explained(view, question, what, request.query_params.get("at") or None))
+
+    async def explained(self, view: KnownRobot, question: OperatorRequest, what: str, at: str | None) -> dict[str, Any]:
+        """Return why something happened, or did not: from the exhibition, else the journal. Raises DeniedError."""
         try:
             said = await self._request(view, question(what=what, **({"at": at} if at else {})))
         except DeniedError:  # its journal may hold the answer
-            if not self._is_ours(view):
+            if not self.is_ours(view):
                 raise
             said = {"kept": "later"}
-        if said.get("kept") == "later" and self._is_ours(view):
-            said = orjson.loads(await self._jobs.do("why", self._home(view), question.ask, what, at))
+        if said.get("kept") == "later" and self.is_ours(view):
+            said = orjson.loads(await self._jobs.do("why", self.home(view), question.ask, what, at))
         if said.get("verdict") == "refused":
             raise DeniedError(404, str(said.get("reason")))
-        return as_json(said)
+        return said
 
     async def _fork(self, request: Request) -> Response:
         self._reception.person(request, Role.AUTHOR)
@@ -130,75 +133,75 @@ class Past:
         return Response(told["text"], headers={**NO_STORE, "Content-Disposition": name}, media_type="text/csv")
 
     async def _day_asked(self, request: Request, form: str) -> bytes:
-        view, wanted = self._asked(request, Role.OPERATOR), request.query_params.get("date", "")
+        view, wanted = self.asked(request, Role.OPERATOR), request.query_params.get("date", "")
         try:
             wanted = wanted and date.fromisoformat(wanted).isoformat()
         except ValueError:
             raise DeniedError(400, "`date` must be a day, such as 2026-11-23") from None
         if (
-            self._is_ours(view)
-            and (found := await self._jobs.do("day", self._home(view), wanted, form, "here")) != NOTHING
+            self.is_ours(view)
+            and (found := await self._jobs.do("day", self.home(view), wanted, form, "here")) != NOTHING
         ):
             return found
         try:
             return await self._jobs.do(
-                "day", self._home(view), wanted, form, "told", told=self._source.pages(view.robot)
+                "day", self.home(view), wanted, form, "told", told=self._source.pages(view.robot)
             )
         except BusError as error:
             raise DeniedError(503, f"the exhibition did not send this day: {error}") from None
 
     async def _entries(self, request: Request) -> Response:
-        view = self._asked(request, Role.OPERATOR)
-        return _as_entries(await self._between(view, *_positions(request)))
+        view = self.asked(request, Role.OPERATOR)
+        return _as_entries(await self.between(view, *_positions(request)))
 
     async def _search(self, request: Request) -> Response:
         """Return the entries between two positions whose line contains a text, in any case and in any language."""
-        view, (first, last) = self._asked(request, Role.OPERATOR), _positions(request)
+        view, (first, last) = self.asked(request, Role.OPERATOR), _positions(request)
         text = " ".join(request.query_params.get("text", "").split()).casefold()
         if not 0 < len(text) <= MAX_QUESTION:
             raise DeniedError(400, f"`text` must be a string of 1 to {MAX_QUESTION} characters")
         found, begin = list[EncodedEntry](), first
         while begin <= min(last, first + MAX_SEARCHED) and len(found) <= MAX_FOUND:
-            page = await self._between(view, begin, last)
+            page = await self.between(view, begin, last)
             found += [entry for entry in page if _has(orjson.loads(entry.data), text)]
             if len(page) < MAX_SHOWN:
                 break
             begin = page[-1].position + 1
         return _as_entries(found[:MAX_FOUND], more=len(found) > MAX_FOUND or begin > first + MAX_SEARCHED)
 
-    async def _between(self, view: KnownRobot, first: int, last: int) -> list[EncodedEntry]:
+    async def between(self, view: KnownRobot, first: int, last: int) -> list[EncodedEntry]:
         """Return the first entries between two positions, at least `MAX_SHOWN` or all. Raises DeniedError."""
         try:
             return await self._source.entries(view, first, last)
         except BusError as error:
-            if not self._is_ours(view):
+            if not self.is_ours(view):
                 raise DeniedError(503, f"the exhibition did not send its entries: {error}") from None
-            said = orjson.loads(await self._jobs.do("entries", self._home(view), first, last))
+            said = orjson.loads(await self._jobs.do("entries", self.home(view), first, last))
             return view.entries.encoded(ToldPage(**said))
 
     async def _files(self, request: Request) -> Response:
-        view = self._asked(request, Role.OPERATOR)
+        view = self.asked(request, Role.OPERATOR)
         said: dict[str, Any] = dict(view.files)
         last = said.get("last")
         changed = bool(said.get("staged")) or bool(said.get("waiting"))
         changed = changed or (isinstance(last, dict) and last.get("verdict") in ("refused", "dry run"))
-        if self._is_ours(view) and changed:
-            said["replay"] = orjson.loads(await self._jobs.do("replay", self._home(view)))
+        if self.is_ours(view) and changed:
+            said["replay"] = orjson.loads(await self._jobs.do("replay", self.home(view)))
         return as_json(said)
 
     async def _chart(self, request: Request) -> Response:
         """Return the chart of the behaviour that runs, by the hash of its files."""
-        view = self._asked(request, Role.SHOW)
-        if not self._is_ours(view):
+        view = self.asked(request, Role.SHOW)
+        if not self.is_ours(view):
             raise DeniedError(400, ELSEWHERE)
-        drawn = await self._jobs.do("chart", self._home(view), str(view.said.get("bundle") or ""))
+        drawn = await self._jobs.do("chart", self.home(view), str(view.said.get("bundle") or ""))
         return Response(drawn, headers=NO_STORE, media_type="application/json")
 
     async def _passage(self, request: Request) -> Response:
         """Save an unanswered question with its answer as a passage; it is then checked as any saved file."""
         self._reception.person(request, Role.AUTHOR)
         data = await self._reception.posted(request)
-        if not self._is_ours(self._reception.robot(data.get("robot"))):
+        if not self.is_ours(self._reception.robot(data.get("robot"))):
             raise DeniedError(400, ELSEWHERE)
         question, answer, language = (str(data.get(key, "")) for key in ("question", "answer", "language"))
         try:
@@ -212,45 +215,45 @@ class Past:
         self._reception.person(request, Role.AUTHOR)
         data = await self._reception.posted(request)
         view = self._reception.robot(data.get("robot"))
-        if not self._is_ours(view):
+        if not self.is_ours(view):
             raise DeniedError(400, ELSEWHERE)
         said = [str(data.get(key, "")) for key in SAID]
-        return await self._written("saying", view, *said)
+        return await self.written("saying", view, *said)
 
     async def _story(self, request: Request) -> Response:
         """Save a recorded visit as a story, which `lumen test` plays."""
         self._reception.person(request, Role.AUTHOR)
         data = await self._reception.posted(request)
         view = self._reception.robot(data.get("robot"))
-        if not self._is_ours(view):
+        if not self.is_ours(view):
             raise DeniedError(400, ELSEWHERE)
         position, visitor, name = (data.get(key) for key in ("position", "visitor", "name"))
         if not isinstance(position, int) or isinstance(position, bool):
             raise DeniedError(400, "`position` must be the position of an entry of the visit: a whole number")
         texts = [str(text or "")[:MAX_STORY_NAME] for text in (visitor, name)]
-        return await self._written("story", view, position, *texts)
+        return await self.written("story", view, position, *texts)
 
-    async def _written(self, job: str, view: KnownRobot, *arguments: Any) -> Response:
+    async def written(self, job: str, view: KnownRobot, *arguments: Any) -> Response:
         """Return the answer of a job that writes a file. Raises DeniedError; a job's refusal is a fault of the request
         (400).
         """
         try:
-            saved = await self._jobs.do(job, self._home(view), *arguments)
+            saved = await self._jobs.do(job, self.home(view), *arguments)
         except DeniedError as error:
             raise DeniedError(400 if error.status == 404 else error.status, error.reason) from None
         return Response(saved, headers=NO_STORE, media_type="application/json")
 
-    def _asked(self, request: Request, needs: Role) -> KnownRobot:
+    def asked(self, request: Request, needs: Role) -> KnownRobot:
         self._reception.person(request, needs)
         return self._reception.robot(request.query_params.get("robot"))
 
-    def _is_ours(self, view: KnownRobot) -> bool:
+    def is_ours(self, view: KnownRobot) -> bool:
         """Return True for a robot of the console's own project."""
         return self._watch.keys.is_ours(view.robot)
 
-    def _home(self, view: KnownRobot) -> str:
+    def home(self, view: KnownRobot) -> str:
         """Return the name for the folder of one of our own robots; empty, for the first, if it is another robot."""
-        return self._watch.keys.home(view.robot) if self._is_ours(view) else ""
+        return self._watch.keys.home(view.robot) if self.is_ours(view) else ""
 
     async def _request(self, view: KnownRobot, body: dict[str, Any]) -> dict[str, Any]:
         key = self._watch.keys.of(view.robot).operator

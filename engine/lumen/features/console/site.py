@@ -25,6 +25,7 @@ from lumen.features.console.past import Past
 from lumen.features.console.people import Person, Role
 from lumen.features.console.prepared_sentences import PreparedSentences
 from lumen.features.console.requests import ALL, NO_STORE, DeniedError, Reception, address_of, as_json, say_why_not
+from lumen.features.console.sentences import Sentences
 from lumen.features.console.sights import STREAM, Sights
 from lumen.features.console.streams import Listener, Streams, positions_in
 from lumen.features.console.watch import Watch
@@ -59,6 +60,7 @@ class Site:
                 *past.routes,
                 *FleetPages(self.reception).routes,
                 *self.sights.routes,
+                *Sentences(self.reception, jobs, past).routes,
                 *PreparedSentences(self.reception, root).routes,
                 Mount("/pages", StaticFiles(directory=PAGES)),
             ],

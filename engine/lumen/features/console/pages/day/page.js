@@ -5,6 +5,7 @@ import { command } from "../commands.js";
 import { JOB, get, listen, live } from "../live.js";
 import { Entry, Why, question } from "../now/entries.js";
 import { Quote, reasonOf } from "../quoted.js";
+import { EditButtons, SentenceDialog } from "../sentence.js";
 import { may } from "../session.js";
 import {
   Part,
@@ -69,8 +70,9 @@ function nearest(entries, moment) {
 function Around({ name, visit, moment, chosen, choose, change }) {
   const [entries, set] = useState(/** @type {Written[] | null} */ (null)),
     [failed, fail] = useState(""),
-    [why, ask] = useState(/** @type {Written | null} */ (null)),
-    of = useRef(-1);
+    [why, ask] = useState(null),
+    [edited, edit] = useState(null),
+    of = useRef(null);
   useEffect(() => {
     const from = visit?.from ?? -1;
     if (of.current !== from) set(null); // of another visit; one that goes on keeps what is shown
@@ -114,13 +116,14 @@ function Around({ name, visit, moment, chosen, choose, change }) {
         speechOf(chosen) &&
         html`
         <button type="button" class="what-if" onClick=${() => change(chosen)}>${t("fork.if")}</button>`
-      }</div>`
+      } <${EditButtons} entry=${chosen} edit=${edit} /></div>`
     }
     ${
       why &&
       html`<${Why} robot=${name} what=${question(why)} at=${why.at_time} text=${lineOf(why)}
       onClose=${() => ask(null)} />`
-    }</${Part}>`;
+    }
+    ${edited && html`<${SentenceDialog} name=${name} sentence=${edited} onClose=${() => edit(null)} />`}</${Part}>`;
 }
 
 /** @param {{ name: string }} props */

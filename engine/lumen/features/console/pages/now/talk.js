@@ -4,6 +4,7 @@
 import { command } from "../commands.js";
 import { isHere, live } from "../live.js";
 import { inPageLanguage } from "../quoted.js";
+import { SentenceDialog, sentencesOf } from "../sentence.js";
 import { may } from "../session.js";
 import {
   Part,
@@ -23,24 +24,20 @@ import { Prepared, usePrepared } from "./prepared.js";
 
 const LINES = 10;
 
-/**
- * A line of the conversation: when, what, by the robot or a visitor, in which language, and how sure the ears were.
- * @typedef {{ key: string, at: string, text: string, robot?: boolean, language?: string, sure?: number | null }} Spoken
- */
-
-/**
- * The lines that an entry of the journal is in the conversation: what the visitor said, then what the robot says.
- * @param {Entry} entry
- * @returns {Spoken[]}
- */
-function linesOf({ position, at_time: at, data, heard, commands = [] }) {
+/** The lines that an entry of the journal is in the conversation: what the visitor said, then what the robot says. */
+function linesOf(entry) {
+  const { position, at_time: at, data, heard, commands = [] } = entry;
   const speech = heard && typeof data?.result === "string";
   const words = speech ? [{ at, text: data.result, sure: data.confidence ?? null }] : [];
-  const said = commands.map((one) => one.Start?.command?.Say).filter(Boolean);
-  return [...words, ...said.map((say) => ({ at, robot: true, ...say }))].map((line, n) => ({
-    ...line,
-    key: `${position} ${n}`,
+  const languages = new Map(commands.map((one) => [one.Start?.id, one.Start?.command?.Say?.language]));
+  const said = sentencesOf(entry).map((sentence) => ({
+    at,
+    robot: true,
+    text: sentence.text,
+    language: languages.get(sentence.id),
+    sentence,
   }));
+  return [...words, ...said].map((line, n) => ({ ...line, key: `${position} ${n}` }));
 }
 
 /**
@@ -48,7 +45,8 @@ function linesOf({ position, at_time: at, data, heard, commands = [] }) {
  * @param {{ robot: Robot }} props
  */
 export function Lines({ robot }) {
-  const list = useRef(/** @type {HTMLOListElement | null} */ (null)),
+  const list = useRef(null),
+    [edited, edit] = useState(null),
     mine = live.told.filter((one) => one.robot === robot.robot);
   const lines = mine.flatMap(linesOf).slice(-LINES),
     last = lines.at(-1)?.key;
@@ -66,8 +64,17 @@ export function Lines({ robot }) {
           html` <span
           class="quiet">${t("talk.sure", { percent: percent(line.sure * 100) })}</span>`
         }
+        ${
+          line.sentence &&
+          may("author") &&
+          html` <button type="button" class="plain edit-sentence" title=${t("sentence.edit")}
+          aria-label=${t("sentence.of", { text: line.text })} onClick=${() => edit(line.sentence)}>✎</button>`
+        }
       </li>`,
-    )}</ol></${Part}>`;
+    )}</ol>
+    ${
+      edited && html`<${SentenceDialog} name=${robot.robot} sentence=${edited} onClose=${() => edit(null)} />`
+    }</${Part}>`;
 }
 
 /** @param {{ robot: Robot }} props */
