@@ -1,7 +1,7 @@
 // @ts-check
 // The day from left to right: hours, visits, marks, and the moment that is looked at.
-/** @import { Day, Stretch } from "../types" */
-import { clock, html, span, t, valueOf } from "../ui.js";
+import { clock, html, span, t } from "../ui.js";
+import { ZoomButtons, ticks, useZoom } from "./zoom.js";
 
 const HOUR = 3600e3,
   STEP = 1000,
@@ -38,24 +38,21 @@ export function bounds(day) {
 const around = (visit) =>
   visit.n ? `${t("day.visit", { n: visit.n })}, ${span(visit.seconds ?? 0)}` : t("day.between");
 
-/**
- * `scrub(at)` looks at a moment [ms since 1970], `look(part)` at a visit or at what was between two.
- * @typedef {{ scrub: (at: number) => void, look: (part: Stretch) => void }} Looks
- * @param {{ day: Day, bounds: [number, number], visit: Stretch | null, moment: number } & Looks} props
- */
-export function Line({ day, bounds: [begin, end], visit, moment, scrub, look }) {
-  const x = (/** @type {number} */ at) => ((at - begin) / (end - begin)) * WIDE,
-    hours = /** @type {number[]} */ ([]);
-  const each = Math.max(1, Math.ceil((end - begin) / HOUR / 12)) * HOUR;
-  for (let at = begin; at <= end; at += each) hours.push(at);
-  const iso = (/** @type {number} */ at) => new Date(at).toISOString();
+/** A time below the line, in the middle of its mark; at an end of the line, inside the line. */
+function Tick({ at, part, seconds }) {
+  const edge = part < 0.02 ? "first" : part > 0.98 ? "last" : null;
+  return html`<li class=${edge} style=${{ left: `${part * 100}%` }}>${clock(new Date(at).toISOString(), seconds)}</li>`;
+}
+
+export function Line({ day, bounds, visit, moment, scrub, look }) {
+  const view = useZoom(bounds, moment),
+    [begin, end] = view.shown,
+    x = (at) => ((at - begin) / (end - begin)) * WIDE;
+  const { times: hours, seconds } = ticks(view.shown);
+  const iso = (at) => new Date(at).toISOString();
   return html`<section class="part line" aria-label=${t("day.scrub")}>
-    <svg viewBox="0 0 ${WIDE} ${HIGH}" preserveAspectRatio="none" aria-hidden="true" onClick=${(
-      /** @type {MouseEvent} */ e,
-    ) => {
-      const box = /** @type {Element} */ (e.currentTarget).getBoundingClientRect();
-      scrub(begin + ((e.clientX - box.left) / box.width) * (end - begin));
-    }}>
+    <svg viewBox="0 0 ${WIDE} ${HIGH}" preserveAspectRatio="none" aria-hidden="true" ...${view.handlers}
+      onClick=${(e) => view.wasDrag() || scrub(view.timeAt(e))}>
       <rect class="road" x="0" y="22" width=${WIDE} height="40" rx="6" />
       ${hours.map((at) => html`<line class="hour" x1=${x(at)} x2=${x(at)} y1="14" y2="70" />`)}
       ${day.between?.map(
@@ -74,16 +71,20 @@ export function Line({ day, bounds: [begin, end], visit, moment, scrub, look }) 
           /** @type {MouseEvent} */ e,
         ) => {
           e.stopPropagation();
-          look(one);
+          if (!view.wasDrag()) look(one);
         }} />`,
       )}
       ${day.marks?.map((one) => html`<path class="flag" d="M${x(Date.parse(one.at))} 12 v52 m0 -52 l14 7 l-14 7 z" />`)}
       <line class="moment" x1=${x(moment)} x2=${x(moment)} y1="6" y2="78" /></svg>
-    <ol class="hours" aria-hidden="true">${hours.map((at) => html`<li>${clock(iso(at), false)}</li>`)}</ol>
+    <ol class="hours" aria-hidden="true">${hours.map(
+      (at) => html`<${Tick} at=${at} part=${x(at) / WIDE} seconds=${seconds} />`,
+    )}</ol>
     <label><span class="hidden">${t("day.scrub")}</span><input type="range" min=${begin} max=${end} step=${STEP}
       value=${moment}
       aria-valuetext="${clock(iso(moment))}${visit ? `, ${around(visit)}` : ""}"
-      onInput=${(/** @type {Event} */ e) => scrub(Number(valueOf(e)))} /></label>
+      onKeyDown=${(e) => view.typed(e, scrub, STEP)}
+      onInput=${(e) => scrub(Number(e.target.value))} /></label>
+    <${ZoomButtons} view=${view} bounds=${bounds} />
     ${
       day.marks?.length > 0 &&
       html`<ul class="marks">${day.marks.map(

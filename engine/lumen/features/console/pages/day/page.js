@@ -215,7 +215,8 @@ export default function DayPage({ name }) {
         onClick=${() => command(name, "mark")}>${t("day.mark")}</button>`
       }</div>
     <${Totals} numbers=${day.numbers} />
-    <${Line} day=${day} bounds=${bounds(day)} visit=${shown} moment=${moment} scrub=${scrub} look=${look} />
+    <${Line} key=${day.date} day=${day} bounds=${bounds(day)} visit=${shown} moment=${moment} scrub=${scrub}
+      look=${look} />
     <${Find} name=${name} date=${day.date} parts=${parts} scrub=${scrub} open=${open} />
     <div class="day"><${Visits} day=${day} visit=${shown} choose=${look} />
       <${Around} name=${name} visit=${shown} moment=${moment} chosen=${chosen} change=${instead} choose=${(

@@ -145,6 +145,8 @@ export default {
   "sentence.model": "The language model made this sentence: it is in no file.",
   "sentence.nowhere": "The saved files do not contain this sentence: it was changed since, or a program made it.",
   "sentence.markdown": "The console cannot edit a text in Markdown: open the file in an editor.",
+  "zoom": "Zoom of the time line", "zoom.in": "Zoom in", "zoom.out": "Zoom out", "zoom.reset": "Whole day",
+  "zoom.whole": "The whole day is shown.", "zoom.part": "{from} to {to} is shown.",
   "find": "Find a moment", "find.time": "Time", "find.time.go": "Go to",
   "find.time.wrong": "This is no time of day: write it as 14:03.",
   "find.text": "Words that a visitor or the robot said", "find.text.go": "Search", "find.count": "{n} found",

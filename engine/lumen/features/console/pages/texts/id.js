@@ -149,6 +149,8 @@ export default {
   "sentence.model": "Kalimat ini dibuat model bahasa: tidak ada di berkas mana pun.",
   "sentence.nowhere": "Berkas tersimpan tidak memuat kalimat ini: sudah diubah, atau dibuat suatu program.",
   "sentence.markdown": "Konsol tidak dapat mengubah teks dalam Markdown: buka berkasnya dengan penyunting.",
+  "zoom": "Pembesaran garis waktu", "zoom.in": "Perbesar", "zoom.out": "Perkecil", "zoom.reset": "Sehari penuh",
+  "zoom.whole": "Sehari penuh ditampilkan.", "zoom.part": "Pukul {from} sampai {to} ditampilkan.",
   "find": "Cari suatu saat", "find.time": "Waktu", "find.time.go": "Buka",
   "find.time.wrong": "Ini bukan waktu: tulis seperti 14:03.",
   "find.text": "Kata-kata pengunjung atau robot", "find.text.go": "Cari", "find.count": "{n} ditemukan",
