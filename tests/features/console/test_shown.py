@@ -83,6 +83,9 @@ def test_a_moment_is_found_by_its_time_and_by_words(viewer: Viewer, own: tuple[H
     viewer.run("document.querySelector('.go-to input').select()")
     viewer.type(local, Keys.ENTER)
     viewer.shows(f"At {local}", ".day .entries")
+    viewer.run("document.querySelector('.go-to input').select()")
+    viewer.type(local[:-3], Keys.ENTER)  # the visit begins after the full minute
+    viewer.shows("my name is Budi", ".day .entries")
     assert violations(viewer) == []
 
 

@@ -9,13 +9,13 @@ import { Part, html, t, useState, valueOf } from "../ui.js";
 const TIME = /^\s*([01]?\d|2[0-3])[:.]([0-5]\d)(?:[:.]([0-5]\d))?\s*$/;
 
 /**
- * A time of day, such as 14:03 or 14.03.20, on a date [ms since 1970]; null if the text is none.
- * @param {string} date
- * @param {string} text
+ * A time of day, such as 14:03 or 14.03.20, on a date: the moment [ms since 1970], and whether it is a whole minute;
+ * null if the text is none.
  */
 export function momentOf(date, text) {
-  const [, hour, minute, second = "00"] = TIME.exec(text) ?? [];
-  return hour ? Date.parse(`${date}T${hour.padStart(2, "0")}:${minute}:${second}`) : null;
+  const [found, hour, minute, second] = TIME.exec(text) ?? [];
+  const at = () => Date.parse(`${date}T${hour.padStart(2, "0")}:${minute}:${second ?? "00"}`);
+  return found ? { at: at(), minute: second === undefined } : null;
 }
 
 /** @param {{ date: string, scrub: (at: number) => void }} props */
@@ -24,9 +24,9 @@ function GoTo({ date, scrub }) {
     [wrong, complain] = useState("");
   const go = (/** @type {SubmitEvent} */ submitted) => {
     submitted.preventDefault();
-    const at = momentOf(date, text);
-    complain(at === null ? t("find.time.wrong") : "");
-    if (at !== null) scrub(at);
+    const found = momentOf(date, text);
+    complain(found ? "" : t("find.time.wrong"));
+    if (found) scrub(found.at, found.minute);
   };
   return html`<form class="go-to" onSubmit=${go}>
     <label><span>${t("find.time")}</span><input value=${text} placeholder="14:03" size="8" maxlength="8"
@@ -65,9 +65,8 @@ function Search({ name, first, last, open }) {
 }
 
 /**
- * `scrub(at)` looks at a moment [ms since 1970], `open(entry)` at an entry; `parts` are the stretches of the day.
- * @typedef {{ scrub: (at: number) => void, open: (entry: Written) => void }} Looks
- * @param {{ name: string, date: string, parts: Stretch[] } & Looks} props
+ * `scrub(at, minute)` looks at a moment [ms since 1970] or a whole minute, `open(entry)` at an entry; `parts` are the
+ * stretches of the day.
  */
 export function Find({ name, date, parts, scrub, open }) {
   return html`<${Part} title=${t("find")} kind="find"><${GoTo} date=${date} scrub=${scrub} />
