@@ -176,6 +176,23 @@ def test_a_change_is_told(edits: list[tuple[str, str, str]], told: list[str], gr
     assert risk(found) is greatest
 
 
+@for_each(
+    ("file", "was", "now"),
+    [
+        ("motions/nao/life/calm.yaml", b"period: 4s", b"period: 5s"),
+        ("motions/nao/dance.yaml", b"tempo: 132", b"tempo: 120"),
+    ],
+)
+def test_a_change_of_the_robots_own_file_names_that_file(file: str, was: bytes, now: bytes) -> None:
+    shared = FILES[file.replace("nao/", "")]
+    versions = (shared, shared.replace(was, now))
+    (old, _), (new, _) = (check_files(ROOT, {**FILES, file: content}) for content in versions)
+    assert old
+    assert new
+    assert {change.file for change in changes(old, new)} == {file}
+    assert {change.file for change in changes(new, old)} == {file}
+
+
 @pytest.mark.parametrize(
     "field",
     sorted({one.name for one in fields(Project) if isinstance(getattr(PLAIN, one.name), Mapping)} - NOT_COMPARED),

@@ -15,6 +15,8 @@ from lumen.language.projects import Project
 MAX_SUMMARY_CHANGES = 4
 """The number of changes up to which a summary names each; with more, kinds with more than two changes are counted."""
 
+_SHARED_MOVEMENTS = ("gestures", "life")
+"""The folders in motions/ that are for all robots; each other is named after a robot's model."""
 _SELF = ("root", "hash", "documents")
 
 
@@ -67,12 +69,8 @@ def _changes(old: Project, new: Project) -> Iterator[Change]:
     yield from entry_changes(
         "controller", "controller", Risk.MOTION, "fuzzy/{}.yaml", old.controllers, new.controllers, controller_changes
     )
-    yield from entry_changes(
-        "motion", "motion", Risk.MOTION, "motions/{}.yaml", old.motions, new.motions, motion_changes
-    )
-    libraries = old.gestures, new.gestures
-    yield from entry_changes("gestures", "library of gestures", Risk.MOTION, "motions/gestures/{}.yaml", *libraries)
-    yield from entry_changes("life", "style of life", Risk.MOTION, "motions/life/{}.yaml", old.life, new.life)
+    for found in _movements(old, new):
+        yield replace(found, file=_file_of_movement(found, new) or _file_of_movement(found, old) or found.file)
     for found in entry_changes("route", "route", Risk.WIRING, "lumen.yaml", old.routes, new.routes, route_changes):
         uses = (new.routes.get(found.about) or old.routes[found.about]).uses
         yield replace(found, file=uses[0].file) if uses else found
@@ -88,6 +86,30 @@ def _changes(old: Project, new: Project) -> Iterator[Change]:
     yield from entry_changes("story", "story", Risk.COSMETIC, "behaviors/stories/{}.yaml", old.stories, new.stories)
     tried = "file of sayings", Risk.COSMETIC, "behaviors/sayings/{}.yaml"
     yield from entry_changes("sayings", *tried, old.sayings, new.sayings)
+
+
+def _movements(old: Project, new: Project) -> Iterator[Change]:
+    """Yield the changes of motions, gestures and styles of life, each with the file for all robots."""
+    yield from entry_changes(
+        "motion", "motion", Risk.MOTION, "motions/{}.yaml", old.motions, new.motions, motion_changes
+    )
+    libraries = old.gestures, new.gestures
+    yield from entry_changes("gestures", "library of gestures", Risk.MOTION, "motions/gestures/{}.yaml", *libraries)
+    yield from entry_changes("life", "style of life", Risk.MOTION, "motions/life/{}.yaml", old.life, new.life)
+
+
+def _file_of_movement(change: Change, project: Project) -> str:
+    """Return the file of a motion or style of life: that in the robot's own folder, if there is one; empty if none.
+
+    No other robot's files were read.
+    """
+    inside = [f"{change.about}.yaml"] if change.kind == "motion" else [change.kind, f"{change.about}.yaml"]
+    for file in project.documents:
+        motions, _, rest = file.partition("/")
+        model, *own = rest.split("/")
+        if motions == "motions" and own == inside and model not in _SHARED_MOVEMENTS:
+            return file
+    return change.file if change.file in project.documents else ""
 
 
 def _manifests(project: Project) -> dict[str, VerbRow]:
