@@ -1,17 +1,19 @@
-"""Files in the project's folders that are not read because their names are slightly wrong."""
+"""Files in the project's folders that are not read because of their names, or those of their folders."""
 
 from dataclasses import replace
 
 from lumen.project.building import MISSING_FILE, NOT_READ
 from lumen.project.draft import ProjectDraft
 from lumen.project.files import MISTAKEN_FOLDERS
+from lumen.project.lending import shipped_models
 from lumen.project.misplaced import misnamed_in
 from lumen.project.packaged import misnamed_main_file
-from lumen.project.project_folders import ALL_FOLDERS, MAIN_FILE
+from lumen.project.project_folders import ALL_FOLDERS, MAIN_FILE, MODELS
+from lumen.project.unread import unread_in
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report files whose ending has capital letters or is followed by another one, and folders with capital letters."""
+    """Report files and folders whose names are slightly wrong, and files in folders that are not read."""
     if draft.root is None:
         return
     for folder in ("", *sorted((*ALL_FOLDERS, *MISTAKEN_FOLDERS))):
@@ -20,6 +22,8 @@ def check(draft: ProjectDraft) -> None:
             name = meant if meant.endswith("/") else meant.rpartition("/")[2]
             message = f"Lumen does not read this: its name is not `{name}`"
             draft.say(NOT_READ, there.rstrip("/"), message, f"rename it to {name}")
+    for file, message, hint in unread_in(draft.root, {*draft.names[MODELS], *shipped_models()}, draft.looks.at):
+        draft.say(NOT_READ, file, message, hint)
     if MAIN_FILE not in draft.files and (there := misnamed_main_file(draft.root)):
         hint = f"rename {there} to {MAIN_FILE}"
         draft.loose[:] = [replace(d, hint=hint) if d.code == MISSING_FILE else d for d in draft.loose]

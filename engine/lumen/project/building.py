@@ -11,7 +11,7 @@ from unicodedata import normalize
 from lumen.feature import VerbRow, resolve, rows, table
 from lumen.fuzzy.controllers_by_role import by_role
 from lumen.language.added_verbs import UNUSABLE
-from lumen.language.diagnostics import ERROR, WARNING, Code, Severity, did_you_mean, has_errors
+from lumen.language.diagnostics import ERROR, WARNING, Code, Severity, has_errors
 from lumen.language.folders import FUNCTIONS_FOLDER, KNOWLEDGE_FOLDER, QUESTIONS_FOLDER, SAYINGS_FOLDER
 from lumen.language.json_paths import values_in
 from lumen.language.life import LifeStyle
@@ -58,6 +58,7 @@ from lumen.project.project_folders import (
 )
 from lumen.project.settings import Settings, build_settings, other_vocabulary
 from lumen.project.stories import build_sayings, build_story
+from lumen.project.unread import robots_own_hint
 from lumen.project.used_routes import used_routes
 from lumen.project.words import build_words
 
@@ -397,7 +398,7 @@ def _strangers(found: ProjectDraft) -> None:
     folders = {str(path): path.name for path in inside if str(path.parent) == MOTIONS}
     for folder, name in folders.items():
         if is_robots_own(folder) and name not in known:
-            hint = f"name the folder after a robot model: {did_you_mean(name, known, 'available:')}"
+            hint = robots_own_hint(name, known)
             first = min(file for file in found.files if file.startswith(f"{folder}/"))
             found.say(NOT_READ, first, f"files in {folder}/ are not read: no model is called `{name}`", hint)
 

@@ -23,7 +23,7 @@ class Misnamed(NamedTuple):
 
 def misnamed_in(root: Path, folder: str) -> Iterator[Misnamed]:
     """Yield files of a project folder whose ending is nearly right, and folders with capital letters."""
-    endings, listed = endings_in(folder), _listed(root, folder)
+    endings, listed = endings_in(folder), listed_in(root, folder)
     for name in listed:
         path = f"{folder}/{name}" if folder else name
         lowered = path.lower()
@@ -48,8 +48,8 @@ def misnamed_for(root: Path, folder: str, name: str) -> Misnamed | None:
     return next(fits, None)
 
 
-def _listed(root: Path, folder: str) -> list[str]:
-    """Return the names in a folder of the project; none if the folder is outside of the project."""
+def listed_in(root: Path, folder: str) -> list[str]:
+    """Return the names in a folder of the project, sorted; none if the folder is outside of the project."""
     try:
         listed = sorted(os.listdir(root / folder))
         return listed if _is_inside(root, folder) else []

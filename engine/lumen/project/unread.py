@@ -1,0 +1,195 @@
+"""Files of a project that nothing reads: in a folder that is none of a project's, or with another ending."""
+
+import os
+from collections.abc import Callable, Collection, Iterator
+from pathlib import Path, PurePosixPath
+from typing import NamedTuple
+
+from lumen.language.diagnostics import did_you_mean, nearest
+from lumen.language.folders import DRIVERS_FOLDER, KNOWLEDGE_FOLDER
+from lumen.project.files import MISTAKEN_FOLDERS
+from lumen.project.misplaced import listed_in, misnamed_in
+from lumen.project.project_folders import (
+    ALL_FOLDERS,
+    FILE_KINDS,
+    KINDS,
+    LIFE_FOLDER,
+    MAIN_FILE,
+    MESSAGES,
+    MODELS,
+    MOTIONS,
+    PROJECT_FOLDERS,
+    SKILLS,
+    endings_in,
+    is_robots_own,
+    kind_in,
+    life_of,
+)
+
+MAX_DEPTH = 3
+"""How deep in a folder that is not read its first file is searched."""
+MAX_LISTED = 500
+"""The most entries of a folder that is not read among which that file is searched."""
+
+_SCHEMAS = MESSAGES.partition("/")[0]
+_SCHEMA_ENDING = ".schema.json"
+_OF_PROGRAMS = (SKILLS, MODELS)
+"""Folders in which programs and models keep files of their own, of any kind."""
+_PROSE = ("markdown", "mdown", "mkd", "txt")
+
+
+class Unread(NamedTuple):
+    """A file that is not read, the reason, and what to do, in words."""
+
+    file: str
+    message: str
+    hint: str
+
+
+def unread_in(root: Path, models: Collection[str], look: Callable[[Path], object]) -> Iterator[Unread]:
+    """Yield files that a person probably wrote for this project and that are not read; of a folder, only the first.
+
+    `models` are the robot models whose own folders in motions/ are read. `look` is called with each folder that the
+    result depends on. Folders that are reported for capital letters, or by the files read from them, are left out.
+    """
+    yield from _at_root(root, look)
+    for folder in PROJECT_FOLDERS:
+        yield from _within(root, folder, models, look)
+
+
+def _within(root: Path, folder: str, models: Collection[str], look: Callable[[Path], object]) -> Iterator[Unread]:
+    """Yield the unread files in a folder whose files are read, and those in its subfolders."""
+    look(root / folder)
+    misnamed = {each.there.rstrip("/"): PurePosixPath(each.meant).name for each in misnamed_in(root, folder)}
+    endings = (_SCHEMA_ENDING,) if folder == MESSAGES else endings_in(folder)
+    for name in listed_in(root, folder):
+        path = f"{folder}/{name}"
+        if endings and name.endswith(endings):
+            continue
+        if path in misnamed:
+            if is_robots_own(folder):  # lint reports those of the folders for all robots
+                yield Unread(
+                    path,
+                    f"Lumen does not read this: its name is not `{misnamed[path]}`",
+                    f"rename it to {misnamed[path]}",
+                )
+            continue
+        if name.startswith((".", "_")):
+            continue
+        if os.path.isdir(root / path):
+            if path in ALL_FOLDERS or (kind_in(path) and _robot_of(path) in models):
+                yield from _within(root, path, models, look)
+            elif not (is_robots_own(path) and _has_own(root, path)):  # which is reported by its motions
+                yield from _of_folder(root, path, models, look)
+        else:
+            yield from _of_file(folder, name)
+
+
+def _of_folder(root: Path, folder: str, models: Collection[str], look: Callable[[Path], object]) -> Iterator[Unread]:
+    """Yield the first file in a folder that is not read, if its ending is that of a project's files."""
+    above = folder.rpartition("/")[0]
+    endings = tuple(dict.fromkeys((*(endings_in(above) or (".json",)), ".yaml", ".yml")))
+    wanted = tuple(ending for ending in endings if ending != ".xml")
+    depth = 1 if above == SKILLS else MAX_DEPTH
+    if first := _first(root, folder, wanted, depth, look):
+        yield Unread(first, f"files in {folder}/ are not read", _home_hint(folder, models))
+
+
+def _first(root: Path, folder: str, endings: tuple[str, ...], depth: int, look: Callable[[Path], object]) -> str:
+    """Return the first file with one of these endings in a folder and those in it; empty if there is none."""
+    look(root / folder)
+    inside = [name for name in listed_in(root, folder)[:MAX_LISTED] if not name.startswith((".", "_"))]
+    if MAIN_FILE in inside:  # a project of its own
+        return ""
+    if found := next((name for name in inside if name.endswith(endings)), ""):
+        return f"{folder}/{found}"
+    deeper = (f"{folder}/{name}" for name in inside if depth > 1 and os.path.isdir(root / folder / name))
+    return next((found for each in deeper if (found := _first(root, each, endings, depth - 1, look))), "")
+
+
+def _home_hint(folder: str, models: Collection[str]) -> str:
+    """Return what to do with the files of a folder that is not read."""
+    above, _, name = folder.rpartition("/")
+    if above == LIFE_FOLDER and name in models:
+        return f"move the files to {life_of(name)}/"
+    if is_robots_own(folder):
+        return robots_own_hint(name, models)
+    inside = {PurePosixPath(path).name: path for path in ALL_FOLDERS if str(PurePosixPath(path).parent) == above}
+    if is_robots_own(above):
+        inside = {PurePosixPath(life_of(name)).name: life_of(PurePosixPath(above).name)}
+    if near := nearest(name, inside):
+        return f"did you mean `{inside[near]}/`?"
+    known = {PurePosixPath(path).name: path for path in KINDS}
+    if near := nearest(name, known):
+        return f"move the files to {known[near]}/"
+    home = MOTIONS if is_robots_own(above) else MESSAGES if above == _SCHEMAS else above
+    return f"move the files that belong to the exhibition to {home}/"
+
+
+def robots_own_hint(name: str, models: Collection[str]) -> str:
+    """Return what to do with a folder in motions/ that is named after no robot model."""
+    shared = {PurePosixPath(path).name: path for path in KINDS if path.startswith(f"{MOTIONS}/")}
+    if (near := nearest(name, {*models, *shared})) in shared:
+        return f"did you mean `{shared[near]}/`?"
+    return f"name the folder after a robot model: {did_you_mean(name, models, 'available:')}"
+
+
+def _of_file(folder: str, name: str) -> Iterator[Unread]:
+    """Yield a file with an ending that is nearly right, or right in another folder; backups are left out."""
+    stem, dot, ending = name.rpartition(".")
+    if name.endswith(("~", ".bak", ".orig", ".tmp")) or stem.isupper() or not endings_in(folder):
+        return
+    if folder == MESSAGES:
+        meant = f"{_message_of(name)}{_SCHEMA_ENDING}" if ending in ("json", "yaml", "yml") else ""
+    elif folder == KNOWLEDGE_FOLDER and dot and ending.lower() in _PROSE:
+        meant = f"{stem}.md"
+    elif folder in _OF_PROGRAMS:
+        meant = f"{stem}.yaml" if dot and ending != "yml" and nearest(ending.lower(), ("yaml",)) else ""
+    elif not dot:
+        meant = f"{name}.yaml" if name == name.lower() else ""
+    else:
+        meant = f"{stem}.yaml" if ending == "json" or nearest(ending.lower(), ("yaml",)) else ""
+    if meant and meant != name:
+        message = f"Lumen does not read this: its name does not end in {_ending_of(meant)}"
+        yield Unread(f"{folder}/{name}", message, f"rename it to {meant}")
+
+
+def _ending_of(name: str) -> str:
+    return _SCHEMA_ENDING if name.endswith(_SCHEMA_ENDING) else PurePosixPath(name).suffix
+
+
+def _message_of(file: str) -> str:
+    """Return the name of the message that a file in schemas/messages/ describes: `face` for `face.shema.json`."""
+    stem, dot, last = file.rpartition(".")[0].rpartition(".")
+    return stem if dot and nearest(last.lower(), ("schema",)) else f"{stem}{dot}{last}"
+
+
+def _at_root(root: Path, look: Callable[[Path], object]) -> Iterator[Unread]:
+    """Yield the first file of each folder of the root whose name is nearly that of a project's folder."""
+    look(root)
+    known = {PurePosixPath(path).name: path for path in (*reversed(tuple(KINDS)), *PROJECT_FOLDERS, DRIVERS_FOLDER)}
+    schemas = {f"{kind}{_SCHEMA_ENDING}" for kind in FILE_KINDS}
+    for name in listed_in(root, _SCHEMAS):
+        if name.endswith(_SCHEMA_ENDING) and name not in schemas:
+            message = "Lumen does not read this as the schema of a message"
+            yield Unread(f"{_SCHEMAS}/{name}", message, f"move it to {MESSAGES}/, if it describes one")
+    for name in listed_in(root, ""):
+        if name in PROJECT_FOLDERS or name in MISTAKEN_FOLDERS or name == DRIVERS_FOLDER or name.startswith("."):
+            continue
+        if name.lower() in ALL_FOLDERS or not (near := nearest(name, known)) or not os.path.isdir(root / name):
+            continue
+        endings = (".py",) if near == DRIVERS_FOLDER else endings_in(known[near]) or (".json",)
+        if first := _first(root, name, endings, 1, look):
+            yield Unread(first, f"files in {name}/ are not read", f"did you mean `{known[near]}/`?")
+
+
+def _robot_of(folder: str) -> str:
+    """Return the robot model whose own files a folder in motions/ holds."""
+    parts = PurePosixPath(folder).parts
+    return parts[1] if len(parts) > 1 else ""
+
+
+def _has_own(root: Path, folder: str) -> bool:
+    """Return True if a robot's folder has files that are read with the project, whether or not they are used."""
+    own = (folder, life_of(PurePosixPath(folder).name))
+    return any(name.endswith(".yaml") for each in own for name in listed_in(root, each))
