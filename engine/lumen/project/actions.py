@@ -37,7 +37,7 @@ ONLY_IN_DO = Code("only-in-do", "statecharts", ERROR, "a verb that waits is used
 
 
 class Actions:
-    """Reads the actions of one document; `units` are the file's, `verbs` those that the project declares."""
+    """Reads the actions of one document: `units` as its file declares them, `verbs` as the project does."""
 
     def __init__(
         self,
@@ -51,9 +51,9 @@ class Actions:
         self.length = LENGTHS.get(units.get("length", "m"), 1.0)
 
     def block(self, data: Any, where: NodePath, *, do: bool = False) -> tuple[PlacedAction, ...]:
-        """Return the actions of a single action or a list, without those that can't be read.
+        """Return the actions in `data`: one action, a list of them, or None for no actions.
 
-        `wait`, `parallel` and `ask` are allowed only with `do`.
+        Actions that can't be read are left out. `do` allows `wait`, `parallel` and `ask`.
         """
         if isinstance(data, Mapping):
             action = self.action(data, where, do=do)
@@ -62,7 +62,7 @@ class Actions:
         return tuple(PlacedAction(a, place) for place, item in rows if (a := self.action(item, place, do=do)))
 
     def action(self, data: Mapping[str, Any], where: NodePath, *, do: bool = False) -> Action | None:
-        """Return one action; if it can't be read, report why and return None."""
+        """Return one action; None if it can't be read. Faults that the file's schema does not show are reported."""
         if "if" in data:
             return self._if(data, where, do=do)
         if len(data) != 1:
@@ -225,4 +225,4 @@ COMPUTED_READERS: Mapping[str, Callable[[Actions, Any, NodePath], Action | None]
     "parallel": Actions._parallel,
     "ask": Actions._ask,
 }
-"""The readers of the verbs that a step evaluates, by verb. `if` is not among them: it has other keys next to it."""
+"""The readers of verbs that are no rows of a table. `if` is not among them: it has other keys next to it."""

@@ -18,19 +18,17 @@ from lumen.language.verbs import is_built_in
 
 @cache
 def usable_verbs() -> Mapping[str, VerbRow]:
-    """Return the verbs of features that the YAML can use: a faulty row would make its schema invalid."""
+    """Return the verbs that features add, by name, without faulty rows: these would make the YAML's schema invalid."""
     return {name: row for name, row in added_verbs().items() if not _fault(name, row)}
 
 
 @dataclass(frozen=True)
 class OwnVerbs:
-    """The verbs that the files of one project declare, by name.
-
-    `hash` is the hash of those files. Two values with the same hash are equal, so what is derived from them is cached.
-    """
+    """The verbs that the files of one project declare, by name."""
 
     rows: Mapping[str, VerbRow] = field(default_factory=dict, compare=False)
     hash: str = ""
+    """The hash of those files. Values with the same hash are equal, so results derived from them can be cached."""
 
     @property
     def all(self) -> Mapping[str, VerbRow]:
@@ -43,7 +41,7 @@ NO_VERBS = OwnVerbs()
 
 
 def faulty_verbs() -> Iterator[tuple[Feature, str]]:
-    """Iterate over the rows that can't be used: the feature of each, and what is wrong with it."""
+    """Yield the feature and the fault of each verb row that can't be used."""
     for feature, (name, row) in rows("verbs"):
         if fault := _fault(name, row):
             yield feature, f"its verb `{name}` is ignored: {fault}"
@@ -61,7 +59,7 @@ def _fault(name: str, row: VerbRow) -> str:
 
 
 def takes_fault(row: VerbRow) -> str:
-    """Return what is wrong with `takes` of a row; empty if nothing is."""
+    """Return what is wrong with a row's `takes`, the time that its verb needs; empty if nothing is."""
     try:
         computed = _duration(row, row.arguments.get("properties", ()))
     except ExpressionError as error:
@@ -87,7 +85,7 @@ def time_taken(command: Do) -> float:
 
 
 def _duration(row: VerbRow, names: Iterable[str]) -> Callable[[Scope], str] | None:
-    """Return the function that computes `takes` from arguments of these names; None if it has no expression."""
+    """Return the function that computes the text of `takes` from arguments of these names; None if it is fixed."""
     parts = split_template(row.takes)
     variables = {name: f"context.{name}" for name in names}
     if all(isinstance(part, str) for part in parts):

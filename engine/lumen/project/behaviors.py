@@ -64,7 +64,10 @@ def build_machine(
 
 
 def fingerprint(data: Any) -> str:
-    """Return the hash of plain data; the order of keys counts, because candidates are tried in the order written."""
+    """Return the SHA-256 of plain data, in hex digits.
+
+    The order of keys counts, because the transitions of a state are tried in the order in which they are written.
+    """
     text = json.dumps(data, ensure_ascii=False, separators=(",", ":"))
     return hashlib.sha256(text.encode("utf-8", "surrogatepass")).hexdigest()
 
@@ -147,7 +150,7 @@ class _Builder:
                 yield [name, [*function.parameters], unparse(function.body)]
 
     def states(self, entry: OutlinedState) -> Iterator[State]:
-        """Yield the state; if it has `for`, yield it unrolled."""
+        """Yield the state of an entry; if it has `for`, yield the states of the unrolled loop instead."""
         state = self.state(entry)
         loop = self.rounds.read(entry, self.expressions.whole)
         if loop is None:

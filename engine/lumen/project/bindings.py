@@ -37,7 +37,7 @@ DEEDS = ("joint", "volume", "message", "context", "event")
 
 
 class BindingFault(NamedTuple):
-    """Why the binding of an output can't be read; the message continues a sentence that begins with its name."""
+    """A fault of an output's binding. The message continues a sentence that begins with the output's name."""
 
     code: Code
     message: str
@@ -66,7 +66,10 @@ def signal_fault(spec: str | Mapping[str, Any]) -> BindingFault | None:
 
 
 def build_signal(variable: Variable, spec: str | Mapping[str, Any], path: NodePath) -> SignalBinding | None:
-    """Return the binding to `volume`, to `route.field` or to the target in a map at `path`; None for a joint."""
+    """Return the binding that `spec` at `path` describes; None for a joint.
+
+    `spec` is `volume`, `route.field` or a map that names the target. It must have passed `signal_fault`.
+    """
     name = variable.name
     if isinstance(spec, str):
         spec = {"volume": True} if spec == "volume" else {"message": spec}
@@ -95,7 +98,7 @@ UNBOUND_INPUT = Code("unbound-input", "controllers", ERROR, "an input of a bound
 
 
 class Bindings:
-    """Reads `bind:` of one file, whose unit of angles is `angle` [rad]. Without `bind:`, no variable must be bound."""
+    """Reads `bind:` of one file, whose unit of angles is `angle` [rad]. Without `bind:`, variables need no binding."""
 
     def __init__(
         self, data: Mapping[str, Any], report: DocumentReport, outputs: Mapping[str, Variable], angle: float

@@ -70,9 +70,10 @@ def build_body(data: Any, report: DocumentReport, *, name: str) -> Body | None:
 def build_likes(
     bodies: Mapping[str, Body], sources: Mapping[str, tuple[Any, DocumentReport]], names: Collection[str]
 ) -> dict[str, Body]:
-    """Return all these bodies and those that are `like` one of them; `sources` are the data and report of each file.
+    """Return all these bodies and those that are `like` one of them.
 
-    `names` are the names of all models, also of unreadable ones, so that a reference to one of those is not reported.
+    `sources` are the data and the report of each model's file. `names` are the names of all models, also of unreadable
+    ones, so that a reference to one of those is not reported.
     """
     found = dict(bodies)
     for name, (data, report) in sources.items():

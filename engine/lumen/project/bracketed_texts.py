@@ -9,11 +9,15 @@ from lumen.project.slips import KEY, Slip, short
 from lumen.talk.patterns import TYPES
 
 _BRACKETED_TEXT = re.compile(r"^(?!\{\w+: )(?=.*[\[{])(?:[\[{][^\[\]{}]*[\]}]|[^\[{(\w])*[\w(]")
-"""A text with brackets and other text outside them, but not a map followed by something."""
+"""A text with brackets and other text outside them, unless it begins with a map."""
 
 
 def bracketed(text: str, index: int) -> Iterator[Slip]:
-    """Yield the texts with brackets that YAML reads as lists or maps, in a line of a file that is not valid YAML."""
+    """Yield slips about texts with brackets that YAML reads as lists or maps, with the line corrected by quotes.
+
+    `text` is line `index`, counted from 0, of a file that is not valid YAML. There are at most two slips: if the line
+    is the text of a key, and if it is within a list or a map.
+    """
     key = re.match(rf" *(?:- +)*(?:{KEY}: +)?", text)
     begin, end = key.end() if key else 0, marks_of(text).stop
     stop = next((at for at in range(begin, end) if text[at] in "]}" and _depth(text[begin : at + 1]) < 0), end)

@@ -33,19 +33,20 @@ def broken(distribution: Distribution, message: str) -> Diagnostic:
 
 
 def resolved(feature: Feature, where: str) -> Any:
-    """Return what an import string of a feature names.
+    """Return the object that an import string of a feature names.
 
-    Raises LumenError with the name of the distribution if a feature is faulty that was installed beside Lumen.
+    Raises LumenError with the name of the distribution if the import fails and the feature comes from another
+    installed package. Errors of Lumen's own features pass.
     """
     with blaming(feature, where):
         return resolve(where)
 
 
 def called(feature: Feature, where: str, *arguments: Any, **named: Any) -> Any:
-    """Return what the function of an import string of a feature returns.
+    """Call the function that an import string of a feature names, and return its result.
 
-    Raises LumenError as that function does, or with the name of the distribution if a feature is faulty that was
-    installed beside Lumen.
+    LumenErrors of the function pass. Any other fault of a feature from another installed package becomes a LumenError
+    with the name of the distribution.
     """
     function = resolved(feature, where)
     with blaming(feature, where, LumenError):
@@ -53,7 +54,7 @@ def called(feature: Feature, where: str, *arguments: Any, **named: Any) -> Any:
 
 
 def called_for_text(feature: Feature, where: str, *arguments: Any, **named: Any) -> str:
-    """Return the text that the function of an import string returns. Raises LumenError as `called`, or for no text."""
+    """Return the result of `called`, which must be a text. Raises LumenError as `called` does, or for another type."""
     text = called(feature, where, *arguments, **named)
     if not isinstance(text, str):
         raise faulty(feature, f"`{where}` returned {shown(text)} instead of a text")
@@ -132,9 +133,9 @@ def shown(value: object) -> str:
 
 
 def fault_of_package(error: BaseException) -> str:
-    """Return the fault that ended the program, if code of a package that was installed beside Lumen raised it.
+    """Return a sentence about an error that code of an installed package with features raised; else empty.
 
-    The innermost call of Lumen's code or of a package's decides; the text is empty if that is Lumen's.
+    The innermost call of Lumen's code or of such a package decides; calls of other modules are skipped.
     """
     found = _raiser(error)
     if not found:
@@ -162,9 +163,9 @@ def _raiser(error: BaseException) -> tuple[Distribution, str, int] | None:
 
 
 def fault_of_subscriber(error: BaseException, pattern: str) -> str:
-    """Return the fault of a subscriber to this pattern of keys, if code of an installed package took part in it.
+    """Return a sentence about a subscriber's error if it called code of an installed package with features; else empty.
 
-    The outermost call of a package's code decides; the text is empty if all calls are of Lumen's code.
+    The outermost call of such a package's code decides. `pattern` is the pattern of keys that it subscribed to.
     """
     packages = _packages()
     called = (packages.get(module.partition(".")[0]) for module, _ in _calls(error))
@@ -184,13 +185,16 @@ def _calls(error: BaseException) -> list[tuple[str, int]]:
 
 
 def _sentence(distribution: Distribution, message: str) -> str:
-    """Return the fault of a distribution as a sentence, with what to do."""
+    """Return the fault of a distribution as a sentence, with advice in brackets."""
     finding = broken(distribution, message)
     return f"{finding.message} ({finding.hint})"
 
 
 def need_made(feature: Feature, where: str, value: Any, kind: type, what: str) -> None:
-    """Raise LumenError if what an import string made lacks a method of a protocol."""
+    """Raise LumenError if `value`, made by the import string `where`, lacks a method of the protocol `kind`.
+
+    `what` names the object in the message.
+    """
     from lumen.upkeep.arguments import need_methods  # findings served from the cache need no interpreters
 
     try:

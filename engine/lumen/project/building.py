@@ -64,7 +64,7 @@ from lumen.project.words import build_words
 
 
 def belongs_to(data: Any, body: Body) -> bool:
-    """Return True if a passage suits this body: it has both postures, and any of the joints that the passage names."""
+    """Return True if a passage suits this body, which needs both postures, and one of the joints if it names any."""
     if not isinstance(data, Mapping) or not {"start", "end"} <= data.keys():
         return True  # its faults are reported elsewhere
     named = set(_joints(data))

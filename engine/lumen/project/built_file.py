@@ -24,17 +24,18 @@ class Build(Protocol[B]):
 
 
 class BuiltFile(NamedTuple, Generic[T]):
-    """A document's checked data, its report and the value built from it; None if the data holds too little for one."""
+    """A document's checked data, its report, and the value built from it."""
 
     data: Any
     report: DocumentReport
     built: T | None
+    """None if the data holds too little to build a value."""
 
 
 def read_file(
     file: str, content: bytes, kind: str, build: Build[T], around: object = None, verbs: OwnVerbs = NO_VERBS
 ) -> tuple[BuiltFile[T] | None, list[Diagnostic]]:
-    """Return the content of a file, None if it can't be read at all, and the findings about its text.
+    """Return the built file and the findings about its text; the file is None if its text can't be parsed.
 
     The report is a copy that the caller may add to; everything else is shared between callers that read the same file.
     `around` is any further input of `build`; `verbs` are those that the project declares.

@@ -18,7 +18,7 @@ def choice() -> Mapping[str, bytes]:
 
 
 def choose(name: str) -> None:
-    """Read all projects with this model, in this process and in those that it starts later."""
+    """Set the model with which this process, and each process that it starts later, reads all projects."""
     os.environ[MODEL_VARIABLE] = name
 
 

@@ -1,4 +1,4 @@
-"""Rewrite the errors of a JSON Schema validator in a student's words."""
+"""Turn the errors of a JSON Schema validator into findings that a student understands."""
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
@@ -18,7 +18,7 @@ WRONG_VALUE = Code("wrong-value", "shape", ERROR, "a value is not one of those a
 
 
 MAX_UNKNOWN_KEYS = 50
-"""Unknown keys of a node for which a suggestion is searched; the rest are reported without a hint."""
+"""The number of unknown keys of a node for which a suggestion is searched; the rest are reported without a hint."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,15 +27,15 @@ class Complaint:
 
     code: Code
     path: NodePath
-    """The node at which it is shown, or whose key it is shown at."""
+    """The node where the finding is shown: at its value, or at its key if `key` is true."""
     message: str
     hint: str
     about: NodePath
     """The node that the finding concerns."""
     doomed: NodePath | None
-    """The node that must be left out because of it, if any."""
+    """The node that must be left out because of the fault; None if all can stay."""
     key: bool = False
-    """Show it at the key of the node instead of the value."""
+    """Show the finding at the key of the node instead of its value."""
     missing: str = ""
     """The key that is absent."""
     suggestion: str = ""
@@ -45,7 +45,7 @@ class Complaint:
 def complaints(error: Error, root: Any = None) -> Iterator[Complaint]:
     """Yield the few findings that describe one error of the validator; of alternatives, only the likeliest.
 
-    `root` is the whole schema, which shows the right place of a misplaced key.
+    `root` is the whole schema, from which the hint about a misplaced key gets the right place.
     """
     keyword, path = error.validator, tuple(error.absolute_path)
     if meant := _misspelt_entry(error, path, root):
@@ -71,9 +71,10 @@ def complaints(error: Error, root: Any = None) -> Iterator[Complaint]:
 
 
 def _misspelt_entry(error: Error, path: NodePath, root: Any) -> str:
-    """Return the entry that was probably meant by one that lacks a key which every entry of another name needs.
+    """Return the known name that an entry's misspelt name was probably meant to be; empty if it is not misspelt.
 
-    `modules` of lumen.yaml has entries with names of their own, and any others, which need a `command`.
+    In `modules` of lumen.yaml, known names have keys of their own, and an entry of any other name needs a `command`. So
+    an entry that lacks the key, and whose name resembles a known one, is a misspelt one.
     """
     section = root.get("properties", {}).get(path[0]) if isinstance(root, Mapping) and len(path) == 2 else None
     known = section.get("properties", ()) if isinstance(section, Mapping) else ()

@@ -1,4 +1,4 @@
-"""Check what a behaviour remembers: first values and JSON Schemas of its context keys and events."""
+"""Check the context and the events of a behaviour: their JSON Schemas, and the initial values of the context."""
 
 from lumen.language.machines import MachineDefinition
 from lumen.project.complaints import WRONG_VALUE

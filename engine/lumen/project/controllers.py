@@ -17,9 +17,10 @@ from lumen.project.variables import build_variables
 
 
 def spread(report: DocumentReport) -> Any:
-    """Return the data with each cell of the table moved to its variable; its place in the file stays the same.
+    """Return the data with each cell of the table `terms:` moved to its variable; the report's document changes too.
 
-    A cell without a variable, and one of a term that the variable already has, is reported.
+    Findings about a moved cell still point at the table. A cell of an unknown variable, or of a term that the variable
+    already has, is reported and left out.
     """
     document = report.document
     if not document.data.get("terms"):

@@ -11,7 +11,7 @@ MAX_KNOWN_BUNDLES = 20
 
 
 class CrashCounter:
-    """Counts for each bundle how often it became active and crashed before its probation was over; kept in a home.
+    """Counts for each bundle, in a file of the home, how often it crashed before its probation was over.
 
     The count is written before the bundle becomes active, because a crashing process can no longer write.
     """
@@ -38,7 +38,7 @@ class CrashCounter:
             self._write({**counts, hash: left - 1} if left > 1 else counts)
 
     def count(self, hash: str) -> int:
-        """Return how often this bundle did not last."""
+        """Return the number of trials of this bundle that began and were neither acquitted nor annulled."""
         return self._counts().get(hash, 0)
 
     def _counts(self) -> dict[str, int]:

@@ -29,7 +29,7 @@ class DocumentReport:
         self.lost: set[str] = {*document.dropped}
         """The names in pruned nodes. Findings that such a name is unknown (`unknown-…`) are left out."""
         self.missed: set[str] = set()
-        """Names without a definition; a similar name may have been meant, and then only looks unused."""
+        """Names that are used but not defined. A defined name of similar spelling may be meant, so it is not unused."""
         self.whole = True
         """True if everything in the file was built. If not, the broken part may hold what others lack."""
 
@@ -68,7 +68,7 @@ class DocumentReport:
         self.pruned, self.lost, self.missed = {*other.pruned}, {*other.lost}, {*other.missed}
 
     def memoize(self, slot: Hashable, given: Any, make: Callable[[], T]) -> T:
-        """Return what `make` returns and add what it reports, both cached by text, findings and `given`."""
+        """Return the result of `make` and add its findings; both are cached by text, earlier findings and `given`."""
         before = (self.document.text, [*self.diagnostics], {*self.pruned}, {*self.lost}, {*self.missed})
         made, after = memoize(slot, (before, given), lambda: (make(), self.copy()))
         self.take(after)

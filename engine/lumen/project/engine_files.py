@@ -71,16 +71,16 @@ def _sources(name: str) -> Iterator[Path]:
 
 
 def surroundings(root: Path) -> str:
-    """Return a text of what results about a project depend on besides its files: its path, the engine and Python."""
+    """Return a text that identifies the rest of what a project's results depend on: its path, the engine and Python."""
     about = (str(root), os.path.abspath(root), engine(), sys.version, sys.path, os.environ.get("PYTHONTZPATH"))
     return repr(about)
 
 
 def listed(folder: Path) -> Iterator[tuple[str, str, int]]:
-    """Yield each file below a folder: its path from there, a text that a copy has too, and when its entry changed [ns].
+    """Yield each file below a folder: its relative path, a text about its state, and when its entry changed [ns].
 
-    The text holds the file's size, when it was written, and the target if it is a link. A folder that can't be listed
-    has no files. If `folder` is a file, its path is `.`.
+    The text holds the file's size, when it was written, and the target if it is a link, so an exact copy has the same.
+    `__pycache__` and folders that can't be listed are skipped. If `folder` is a file, its path is `.`.
     """
     if folder.is_file():
         status = folder.stat()

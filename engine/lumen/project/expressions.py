@@ -169,8 +169,8 @@ def expanded_here(
 ) -> str | None:
     """Return the valid expression or text at a path with calls of the project's functions expanded.
 
-    If one of them is broken, or the result is too large, return None; the latter is reported. `written` is how the
-    author wrote the source, if that differs.
+    Return None if one of them is broken, which only marks the node as pruned, or if the result is too large, which is
+    reported. `written` is the source as the author wrote it, if that differs.
     """
     try:
         return expand(source, functions)
@@ -186,7 +186,7 @@ def expanded_here(
 
 
 def cause_of(file: str, finding: ExpressionFinding) -> str:
-    """Return the cause that findings about the same unknown or unguarded name in a file share; else empty."""
+    """Return the cause that all findings about one unknown or unguarded name in a file share; empty for others."""
     if finding.code == UNKNOWN_CONTEXT_KEY:
         return f"{file} context {finding.message.split('`')[1]}"
     return f"{file} {finding.message}" if finding.code.startswith("unknown-") or finding.code == UNGUARDED_FIELD else ""

@@ -47,7 +47,7 @@ def add_features(schema: dict[str, Any]) -> None:
 
 
 def faulty_options() -> Iterator[tuple[Feature, str]]:
-    """Iterate over the options of modules whose schemas can't be used: the feature of each, and what is wrong."""
+    """Yield the feature and the fault of each module's option whose schema can't be used."""
     for feature, (name, row) in rows("modules"):
         for option in _faulty_options(row):
             yield (

@@ -140,7 +140,7 @@ def _names(folder: Path, endings: tuple[str, ...]) -> list[str]:
 
 
 def _reason(error: OSError) -> bytes:
-    """Return the reason why a file or a folder can't be read, in words."""
+    """Return in words why a file or a folder can't be read; the system's own words for rare errors."""
     if isinstance(error, NotADirectoryError):
         return b"it is a file, and should be a folder"
     if isinstance(error, FileNotFoundError):

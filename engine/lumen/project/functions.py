@@ -38,13 +38,16 @@ _EXPRESSION: NodePath = ("expression",)
 
 @dataclass(frozen=True)
 class FunctionFile:
-    """The content of one file, before the other functions are known; `tree` is None for an unreadable expression."""
+    """The content of one file, before the other functions are known."""
 
     name: str
     parameters: Mapping[str, tuple[str, ...]]
+    """The kinds of value that each argument accepts, by the argument's name."""
     description: Mapping[str, str]
+    """The description by language; under an empty key if it has no language."""
     expression: str
     tree: ExpressionNode | None
+    """The parsed expression; None if its syntax is faulty."""
     examples: tuple[FunctionExample, ...]
 
 
@@ -76,9 +79,9 @@ def build_function(data: Any, report: DocumentReport, *, name: str) -> FunctionF
 def joined(
     files: Mapping[str, BuiltFile[FunctionFile]], names: frozenset[str]
 ) -> tuple[dict[str, FunctionDefinition], dict[str, OwnFunction | None]]:
-    """Return the functions without faults, and all functions as expressions see them.
+    """Return the functions without faults, and all functions as expressions see them: None for a faulty one.
 
-    Faults are reported in the function's file. `names` are all files, also those that can't be read.
+    Faults are reported in the function's file. `names` are those of all files, also of unreadable ones.
     """
     return _Joining(files, names).join()
 
@@ -116,7 +119,7 @@ class _Joining:
         return found
 
     def way_back(self, name: str) -> list[FunctionCall]:
-        """Return the calls that lead from a function back to itself, along a shortest path; empty if none do."""
+        """Return the shortest chain of calls from a function back to itself; empty if it does not call itself."""
         ways: list[list[FunctionCall]] = [[call] for call in self.calls[name]]
         seen = set[str]()
         while ways:
@@ -183,7 +186,7 @@ class _Joining:
 
 
 def _check_name(name: str, report: DocumentReport) -> None:
-    """Report a file name that no expression can use to call the function."""
+    """Report the name of a file if no expression can call a function of that name."""
     message, hint = "", "rename the file"
     if not _NAME.fullmatch(name):
         message = f"an expression can't call a function named `{name}`"

@@ -1,4 +1,4 @@
-"""The keys of `hears`: names of phrases and answers, `ENTRY.FIELD` of a `for`, after `not` or `asked`; or `else`."""
+"""Read the keys of `hears`: names of phrases or answers, or fields of a `for`, after `not` or `asked`; or `else`."""
 
 import re
 from itertools import pairwise
@@ -30,7 +30,10 @@ class HearsKeys:
         self.names = {*tables["phrases"], *tables["answers"]} - {*WORD_LISTS, *TABLES}
 
     def read(self, key: str, where: NodePath) -> tuple[RowWay, tuple[str, ...]]:
-        """Return the way and the names of a key; if it can't be read, report that and return neither."""
+        """Return the first word of a key, if it is `not`, `asked` or `else`, and the names in the key.
+
+        Both are empty for a key that can't be read, which is reported.
+        """
         if key == "else":
             return "else", ()
         words = key.split()
@@ -50,7 +53,10 @@ class HearsKeys:
         return (way, tuple(filter(None, found))) if all(found) else ("", ())
 
     def name(self, name: str, where: NodePath) -> str:
-        """Return a name in its full form; if nothing has that name, report it and return an empty text."""
+        """Return a name of phrases or answers, with the entry of a `for` replaced by its variable.
+
+        Return an empty text for an unknown name, which is reported.
+        """
         if name in self.names or (name and not self.expressions.words.whole and "." not in name):
             return name
         entry, _, field = name.partition(".")
@@ -76,7 +82,7 @@ class HearsKeys:
         return ""
 
     def place(self, name: str, where: NodePath) -> Place:
-        """Return the place of a name in a key."""
+        """Return the place of a name in the key at `where`; that of the whole key if it is not found there."""
         place = self.report.document.place(where, key=True)
         line = lines_of(self.report.document.text)[place.line - 1] if place.line == place.end_line else ""
         found = re.search(rf"(?<!\w){re.escape(name)}(?!\w)", line[place.column - 1 : place.end_column - 1])

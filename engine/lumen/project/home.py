@@ -18,7 +18,7 @@ ADDRESS_FILE = "door.json"
 ROBOTS_FOLDER = "robots"
 """The folder with one home for each robot of `robots:`."""
 MAX_RECORD_BYTES = 64_000_000
-"""The maximum size of one file of a home [bytes]; the position of a behaviour needs some thousands."""
+"""The maximum size of one file of a home [bytes]; the saved state of a behaviour has some thousands."""
 
 
 class Home:
@@ -63,7 +63,7 @@ class Home:
             self._lock = None
 
     def write(self, name: str, data: bytes) -> str:
-        """Write a file as `write_private` does; return why that was impossible, empty if it was done."""
+        """Write a file as `write_private` does; return the reason if that failed, else an empty text."""
         try:
             write_private(self.folder / name, data)
         except OSError as error:
@@ -71,7 +71,7 @@ class Home:
         return ""
 
     def write_json(self, name: str, data: Any) -> str:
-        """Write data as a file of JSON; return why that was impossible, empty if it was done."""
+        """Write data as a file of JSON; return the reason if that failed, else an empty text."""
         return self.write(name, json.dumps(data).encode())
 
     def read(self, name: str) -> bytes | None:
@@ -82,7 +82,7 @@ class Home:
             return None
 
     def read_json(self, name: str) -> Any:
-        """Return the data in a file of JSON; None if it can't be read."""
+        """Return the data in a file of JSON; None if the file can't be read or is not JSON."""
         try:
             return json.loads(self.read(name) or b"null")
         except (ValueError, RecursionError):
@@ -96,9 +96,10 @@ class Home:
 def home_of(root: Path, robot: str = "") -> Path:
     """Return the folder for an exhibition of the project in `root`, for this `robot` if the project has `robots:`.
 
-    It is inside the project. It is in the user's state folder instead, under a name made from the project's path, if
-    the project can't be written, comes with an installed Lumen, or is a link that may lead elsewhere tomorrow or holds
-    one: a project that another person sent may have a `.lumen/` in it.
+    It is `.lumen/` in the project. It is in the user's state folder instead, under a name made from the project's path,
+    if the project can't be written, comes with an installed Lumen or is a link, or if its `.lumen/` is or contains a
+    link. A project that another person sent may hold a `.lumen/` with links, through which files elsewhere would be
+    written.
     """
     within = Path(ROBOTS_FOLDER, robot) if robot else Path()
     return _whole_home(root) / within

@@ -20,7 +20,10 @@ HOW = "write `robot: {name: NAO, model: nao}` for one robot, or `robots:` with a
 
 
 def build_robots(data: Mapping[str, Any], report: DocumentReport) -> dict[str, RobotSpec]:
-    """Return the robots by name, in the order written; the one of `robot:` if there is no `robots:`."""
+    """Return the robots of `robots:` by name, in the order written, or else the one of `robot:`.
+
+    It is reported if the file has both keys, or neither.
+    """
     several = data.get("robots")
     if "robot" in data and several:
         report(ROBOTS_TWICE, ("robots",), "`robot` and `robots` are both set", f"delete one of them: {HOW}", key=True)
@@ -37,7 +40,7 @@ def build_robots(data: Mapping[str, Any], report: DocumentReport) -> dict[str, R
 
 
 def build_house(data: Mapping[str, Any]) -> str:
-    """Return the house's name: the one in lumen.yaml, else the project's, converted to a word of a routing key."""
+    """Return `house` of lumen.yaml; else the project's name as a word of a routing key; "house" without a name."""
     return data.get("house", "") or re.sub(r"[^a-z0-9]+", "-", data.get("name", "").lower()).strip("-") or "house"
 
 
@@ -67,7 +70,10 @@ def _pose(data: Mapping[str, Any], where: NodePath, index: int, report: Document
 
 
 def read_hall_places(data: Mapping[str, Any], report: DocumentReport) -> HallPlaces:
-    """Return the places whose numbers can be used; headings are in degrees if the file names no unit."""
+    """Return the places in SI units, without those with an infinite number or NaN, which are reported.
+
+    Headings are in degrees if the file names no unit of angles.
+    """
     units = data.get("units", {})
     length, angle = LENGTHS[units.get("length", "m")], ANGLES[units.get("angle", "deg")]
     found = {}

@@ -19,7 +19,7 @@ _NAMED = re.compile(r" *(?:- +)?(?P<key>[^\s\"'#\[\]{},:-][^\s:]*):(?: |$)")
 
 
 def indent(line: str) -> int:
-    """Return how many spaces a line begins with."""
+    """Return the number of spaces at the beginning of a line."""
     return len(line) - len(line.lstrip(" "))
 
 
@@ -29,9 +29,9 @@ def is_content(line: str) -> bool:
 
 
 def holder(lines: Sequence[str], row: int, depth: int) -> str:
-    """Return the key that would hold the line of that index at that depth; "" at the top level.
+    """Return the key under which the line with index `row` would be if `depth` spaces preceded it; "" at the top level.
 
-    "- N" is the list item that begins in line N.
+    If it would be inside a list item, the result is `- N`, where N is the item's line, counted from 1.
     """
     is_item = bool(_ITEM.match(lines[row]))
     for i in range(row - 1, -1, -1):
@@ -48,14 +48,16 @@ def holder(lines: Sequence[str], row: int, depth: int) -> str:
 
 
 class LineMove(NamedTuple):
-    """The lines of these indices, and by how many spaces they move in (or out, if negative)."""
+    """A change of the indentation of some lines."""
 
     rows: Sequence[int]
+    """The indices of the lines, from 0."""
     shift: int
+    """The number of spaces to add before each line; negative to remove them."""
 
 
 def move_hint(lines: Sequence[str], move: LineMove, *others: LineMove) -> str:
-    """Return which lines to indent, by how much, and what holds them then; `others` are alternatives."""
+    """Return the advice to move lines: which ones, by how much and to what place; `others` are alternative moves."""
     hint = _move_hint(lines, *move)
     what = hint.partition(" by ")[0]
     return ", or ".join((hint, *(_move_hint(lines, *other).removeprefix(f"{what} ") for other in others)))
@@ -80,7 +82,7 @@ def _move_hint(lines: Sequence[str], rows: Sequence[int], shift: int) -> str:
 
 
 def items(lines: Sequence[str], index: int) -> Iterator[Slip]:
-    """Yield slips about a list item among keys, or a key among list items, in the line of that index."""
+    """Yield slips if the line at `index` is a list item among keys, or a key among list items."""
     here = lines[index]
     above = next((line for line in reversed(lines[:index]) if is_content(line) and indent(line) <= indent(here)), "")
     below = next((line for line in lines[index + 1 :] if is_content(line) and indent(line) <= indent(here)), "")
@@ -114,16 +116,17 @@ def _usual(lines: Sequence[str], index: int) -> bool:
 
 
 def too_deep(lines: Sequence[str], row: int) -> Iterator[Slip]:
-    """Yield the slip that a key is further in than the one above it, which already has a value."""
+    """Yield a slip if the key at `row` is further in than the key above it, although that one already has a value."""
     above = next((line for line in reversed(lines[:row]) if is_content(line)), "")
     if _KEYED.match(lines[row]) and _VALUED.match(above) and indent(lines[row]) > indent(above):
         yield from _moved(lines, row, [indent(above)])
 
 
 def depths(lines: Sequence[str], row: int) -> Iterator[Slip]:
-    """Yield slips for lines that would fit at another depth, alone or with all lines below them; the nearest first.
+    """Yield slips that move the line at `row`, or one before it, to another depth, alone or with the lines within it.
 
-    If earlier lines have the same indentation, a line between them that is further out may have separated them.
+    The nearest lines come first. If earlier lines have the same indentation as `row`, the lines between them that are
+    further out come before `row` itself: one of them may have been moved by mistake.
     """
     told = [i for i in range(row, max(row - LINES_BACK, 0) - 1, -1) if is_content(lines[i])]
     known = [indent(lines[i]) for i in told]

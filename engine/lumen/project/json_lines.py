@@ -1,4 +1,4 @@
-"""Delete the data of a person from files of lines of JSON."""
+"""Delete the data of a person from files with one JSON text in each line."""
 
 import json
 from pathlib import Path
@@ -9,9 +9,9 @@ from lumen.upkeep.own_folders import write_private
 
 
 def forget_lines(file: Path, person: PersonName) -> int:
-    """Delete the lines of a file that name the person; return how many. Raises ModuleError if it can't be written.
+    """Delete the lines of a file that name the person, and return their number; 0 if there is no such file.
 
-    The file is replaced as a whole, and only if there is something to delete.
+    The file is replaced as a whole, and only if a line must go. Raises ModuleError if it can't be read or written.
     """
     try:
         lines = file.read_bytes().splitlines(keepends=True)
@@ -26,7 +26,7 @@ def forget_lines(file: Path, person: PersonName) -> int:
 
 
 def line_names(line: bytes, person: PersonName) -> bool:
-    """Return True if a line of JSON, or one that was cut short, names the person."""
+    """Return True if a line of JSON names the person; a line that was cut short is searched as text."""
     text = line.decode("utf-8", "replace")
     try:
         return person.is_in(json.loads(text))

@@ -9,7 +9,10 @@ from typing import NamedTuple
 from lumen.upkeep.regular_files import read_regular
 
 SETTLED_NS = 2_000_000_000
-"""How old a change must be for the next change to alter the file's times [ns]: some disks count whole seconds."""
+"""The age of a file's last change above which the next change surely alters its times [ns].
+
+Some file systems store times in whole seconds only.
+"""
 
 
 class _Kept(NamedTuple):
@@ -18,16 +21,20 @@ class _Kept(NamedTuple):
 
 
 class KeptContents:
-    """Contents by path, for callers that read the same files each second.
+    """A cache of contents by path, for callers that read the same files each second.
 
-    A regular file has the same content if its device, inode, size and times are as before and were settled then.
+    A file counts as unchanged if its device, inode, size and times are the same. Only contents of regular files that
+    had been unchanged for `SETTLED_NS` are kept.
     """
 
     def __init__(self) -> None:
         self._kept: dict[Path, _Kept] = {}
 
     def read(self, path: Path, entry: os.stat_result, most: int) -> bytes:
-        """Return the content of the file that `entry` describes, at most `most` bytes. Raises as `read_regular`."""
+        """Return the content of the file at `path`, whose status is `entry`. Raises the same errors as `read_regular`.
+
+        `most` is the maximum size [bytes].
+        """
         identity = (entry.st_dev, entry.st_ino, entry.st_size, entry.st_mtime_ns, entry.st_ctime_ns)
         kept = self._kept.get(path)
         if kept and kept.identity == identity:

@@ -83,7 +83,7 @@ class KeyframeReader:
         return joined(parts, now)
 
     def _keyframe(self, item: Mapping[str, Any], here: NodePath, interpolation: Interpolation) -> MotionDefinition:
-        """Return the motion of one keyframe, at time 0."""
+        """Return one keyframe as a motion without length: its keys and cues are at time 0."""
         how = Interpolation(item.get("interpolation", interpolation))
         handles = self.poses.handles(item, here)
         tracks = {
@@ -113,7 +113,10 @@ class KeyframeReader:
         return [name for name in item if name not in KEYFRAME_KEYS and name in self.verbs.all]
 
     def _skill(self, name: str, data: Any, where: NodePath) -> Cue:
-        """Return the cue that begins a skill. Its texts are used as they are: a motion has no expressions."""
+        """Return the cue that begins a skill; durations that can't be read are reported.
+
+        Texts are used as they are, because motions have no expressions.
+        """
         row = self.verbs.all[name]
         arguments = arguments_of(row, data)
         for argument in durations_of(row):

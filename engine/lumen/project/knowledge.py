@@ -1,6 +1,6 @@
-"""Build passages, `knowledge/NAME.yaml` or `NAME.md`, and the questions to try them with.
+"""Build passages, `knowledge/NAME.yaml` or `NAME.md`, and sets of test questions for them.
 
-A passage in Markdown becomes the document that the same passage in YAML would be, with the places of the Markdown file.
+A passage in Markdown becomes the same document as in YAML, but its places point at lines of the Markdown file.
 """
 
 import re
@@ -29,7 +29,10 @@ _HEADING = re.compile(r"#+\s+(\S+)\s*")
 
 
 def parse_markdown(file: str, content: bytes) -> tuple[Document | None, list[Diagnostic]]:
-    """Return the document of a Markdown file, or None, and its faults. No content of the file raises an error."""
+    """Return the document of a Markdown file and its faults; None if it has no YAML data at its beginning.
+
+    No content of the file raises an error.
+    """
     lines = lines_of(content.decode("utf-8-sig", "replace"))
     text = "\n".join(lines)
     end = next((i for i, line in enumerate(lines) if i and line.rstrip() == FENCE), 0)
@@ -52,7 +55,7 @@ def parse_markdown(file: str, content: bytes) -> tuple[Document | None, list[Dia
 def _answers(
     file: str, lines: list[str], begin: int
 ) -> tuple[dict[str, str], dict[NodePath, NodeSpan], list[Diagnostic]]:
-    """Return the paragraphs beneath each heading by language, their places, and the faults found."""
+    """Return the text below each heading by language, its places, and the faults; `begin` is an index of `lines`."""
     answer: dict[str, str] = {}
     spans: dict[NodePath, NodeSpan] = {}
     found: list[Diagnostic] = []

@@ -38,9 +38,9 @@ class KnownWords(NamedTuple):
     anyhow: frozenset[str] = frozenset()
     """The names of phrases that match even if negated."""
     supplied: Any = None
-    """The part of Lumen's own words that is used, as data."""
+    """The part of Lumen's own words that the behaviour can use, as data; None if it uses none."""
     offered: frozenset[str] = frozenset()
-    """Further names that Lumen's own words have."""
+    """The names in Lumen's own words that the behaviour could use if it listed `common` under `words`."""
     functions: KnownFunctions = MappingProxyType({})
     """The functions of the project."""
 
@@ -55,10 +55,11 @@ def known_words(
     shipped: bool = False,
     hears: bool = False,
 ) -> KnownWords:
-    """Return all that a behaviour can name; a missing file and a name that is defined twice are reported.
+    """Return all words that a behaviour can name; a missing file and a name that is defined twice are reported.
 
-    `names` are those of all words files, also of unreadable ones. If `common` is `shipped`, only names that nothing
-    else defines are used from it, in the project's `languages`; a behaviour that `hears` always uses its word lists.
+    `names` are those of all words files, also of unreadable ones. `shipped` is true if the words file `common` comes
+    with Lumen. Then it adds only names that are not defined elsewhere, in the project's `languages`. `hears` is true if
+    the behaviour has `hears`; it then uses the word lists of `common` even if it does not name the file.
     """
     return _Gatherer(data, report, files, names, languages, shipped).gather(hears)
 

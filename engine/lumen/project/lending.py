@@ -1,6 +1,6 @@
-"""Files that come with Lumen and that a project names without having them: robots' bodies, a hall, message schemas.
+"""Files that come with Lumen and that a project may use without a copy: robots' bodies, a hall, message schemas.
 
-Only what is named is lent, and only if the project has no file of that name: its own file always has priority.
+Only files that the project names are lent, and only if it has no file of that name: its own file has priority.
 """
 
 import json
@@ -40,9 +40,10 @@ def _bodies(files: Mapping[str, bytes]) -> Iterator[str]:
 
 
 def model_files(project: Project) -> tuple[Path, str]:
-    """Return the folder with the MJCF of the robot, and the path of the hall from there.
+    """Return the folder with the MJCF of the robot, and the path of the hall relative to it.
 
-    Each is in the project if it has the file, else in the shipped exhibition.
+    Each file is the project's own if it exists, else the one that comes with Lumen. The path of the hall is absolute if
+    the two are in different folders.
     """
     own = Path(project.root) / MODELS
     robot = own if (own / project.body.mjcf).exists() else shipped_root() / MODELS

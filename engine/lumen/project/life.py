@@ -1,4 +1,4 @@
-"""Build a `LifeStyle` from the plain data of `motions/life/NAME.yaml`."""
+"""Build styles of life, `motions/life/NAME.yaml`, and libraries of gestures, from the plain data of their files."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -150,7 +150,7 @@ class _LifeReader:
         return Sway(name, period, self._joints(data, where), data.get("wanders", False), where)
 
     def _joints(self, data: Mapping[str, Any], path: NodePath) -> dict[str, float]:
-        """Return the values of this item by joint, in SI units; `joints` overrides `roles`."""
+        """Return the values under `roles` and `joints` by joint, in SI units; `joints` overrides `roles`."""
         found: dict[str, float] = {}
         self.roles.some(data, path)
         for name, value in (data.get("roles") or {}).items():

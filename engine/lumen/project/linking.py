@@ -34,13 +34,13 @@ def link(
 
 
 def with_robots(machine: MachineDefinition, robots: tuple[str, ...]) -> MachineDefinition:
-    """Return the machine, and those that it invokes, for a house in which these robots receive events sent to them."""
+    """Return the machine, and those that it invokes, with the names of the robots that `send` can address."""
     invoked = {name: with_robots(each, robots) for name, each in machine.invoked.items()}
     return replace(machine, robots=robots, invoked=invoked)
 
 
 class _Linker:
-    """Descends from each behaviour to those that it invokes; `way` is the path from the outermost one."""
+    """Links each behaviour after those that it invokes; `way` is the chain of invocations from the outermost one."""
 
     def __init__(
         self, machines: Mapping[str, MachineDefinition], reports: Mapping[str, DocumentReport], names: Collection[str]

@@ -1,4 +1,4 @@
-"""Record what a result depends on besides the files of a project, so that it is reused only while all is unchanged."""
+"""Record the paths that a result depends on besides a project's files, to reuse it only while they are unchanged."""
 
 import os
 import stat
@@ -16,7 +16,7 @@ Seen = tuple[str | int, ...]
 
 
 class Looks:
-    """The state of each path that was looked at, and the path of each file of a Python package."""
+    """The paths and files of Python packages that a check looked at, each with its state at that time."""
 
     def __init__(self) -> None:
         self._began = time.time_ns()
@@ -62,7 +62,7 @@ class Looks:
 
 
 def unchanged(looks: Mapping[str, Mapping[str, Sequence[str | int]]]) -> bool:
-    """Return True if nothing has changed since these looks, given as JSON, were recorded."""
+    """Return True if no path has changed since `looks`, the result of `Looks.to_json`, was recorded."""
     folders: dict[str, str] = {}
     return all(list(_seen(Path(path), folders)) == list(seen) for path, seen in looks["paths"].items()) and all(
         str(package_file(mjcf) or "") == found for mjcf, found in looks["packages"].items()

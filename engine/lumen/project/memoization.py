@@ -14,13 +14,13 @@ MAX_MEMOIZED = 10_000
 
 _last: dict[Hashable, tuple[Any, Any]] = {}
 _unpacked: set[Hashable] = set()
-"""The slots whose content was unpacked and not replaced since."""
+"""The slots that `unpack` filled and that were not replaced since."""
 _asked: set[Hashable] = set()
 """The slots that were requested since `begin`."""
 
 
 class Same:
-    """Equal to another one only if both hold the very same object; for immutable values that are slow to compare."""
+    """A wrapper that compares by identity, for immutable values that are slow to compare."""
 
     __slots__ = ("value",)
 
@@ -70,7 +70,7 @@ def packed() -> bytes:
 
 
 def unpack(packed: bytes) -> None:
-    """Load results that the same engine has packed. Raises any exception for other bytes."""
+    """Load results of `packed`. Call it only with bytes of the same engine: pickle may run code or raise any error."""
     remembered = pickle.loads(packed)
     _last.update(remembered)
     _unpacked.update(remembered)

@@ -1,8 +1,8 @@
 """Find the mistake in a file that is not YAML: the change that lets a parser get furthest.
 
-A parser notices late: an unclosed quote some lines on, a state at the wrong depth where the next one begins. So
-possible slips are searched in the lines before, and each correction is tried: the one that makes the file valid YAML
-was the mistake. A corrected text has as many lines as before.
+A parser fails late: some lines after an unclosed quote, or where the next state after a misplaced one begins. So
+possible slips are searched in the lines before, and the correction of each is tried. The slip whose correction makes
+the file valid YAML was the mistake. A corrected text has as many lines as before.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -22,7 +22,7 @@ MAX_MENDS = 120
 """The maximum number of changes that are tried."""
 
 MAX_JUDGED = 12
-"""The maximum number of changes that make a file valid YAML and are compared by what its schema then refuses."""
+"""The maximum number of changes that make a file valid YAML and are compared by the faults that its schema finds."""
 
 MAX_CHARACTERS = 200_000
 """The maximum length of a text that is searched [characters]."""
@@ -45,9 +45,9 @@ def mistake(
 ) -> tuple[Slip, str] | None:
     """Return the slip at or before the line `row`, and the corrected text; None if no change helps.
 
-    A change helps if a parser gets further than to the line `failed`; both lines count from 0. `misfits` counts what
-    the file's schema refuses in a text. Of several changes that make the file valid YAML, the one with the fewest
-    misfits is returned.
+    A change helps if the parser then stops after the line `failed`; both lines count from 0. `misfits` returns the
+    number of faults that the file's schema finds in a text, or None to refuse the text. Of several changes that make
+    the file valid YAML, the one with the fewest misfits is returned.
     """
     if len(text) > MAX_CHARACTERS:
         return None
@@ -82,7 +82,7 @@ def mistake(
 
 
 def failure(text: str) -> int | None:
-    """Return the index of the line at which a parser stops; None if the text is valid YAML."""
+    """Return the index of the line at which the parser stops; None for valid YAML, 0 if it is nested too deeply."""
     loader, depth = yaml.CSafeLoader(shielded(text)[0]), 0
     try:
         while loader.check_event():

@@ -1,4 +1,4 @@
-"""The fields of a message, as its JSON Schema declares them, for transports that carry bare values in an order."""
+"""The fields of a message as its JSON Schema declares them, for transports that send values in order, without names."""
 
 from collections.abc import Mapping
 from enum import StrEnum
@@ -27,7 +27,7 @@ class SchemaField(NamedTuple):
 
 
 def message_fields(schema: Mapping[str, Any] | None) -> Mapping[str, SchemaField]:
-    """Return the fields by name, in the order of the schema; none if there is no schema."""
+    """Return the fields by name, in the order of the schema; none if it is None or declares no properties."""
     rows = (schema or {}).get("properties")
     return {name: _field(name, row) for name, row in rows.items()} if isinstance(rows, Mapping) else {}
 

@@ -33,9 +33,9 @@ _IN_PLACE = ("allOf", "anyOf", "oneOf", "not", "if", "then", "else", "$ref")
 
 @lru_cache(maxsize=1_024)
 def build_message(file: str, content: bytes) -> tuple[Mapping[str, Any] | None, tuple[Diagnostic, ...]]:
-    """Return the JSON Schema in `content`, or None, and its faults. No content of the file raises an error.
+    """Return the JSON Schema in `content` and its faults; None instead of the schema if it has any.
 
-    The result depends on nothing else, so that it is cached.
+    No content of the file raises an error. Results are cached, so don't change the schema.
     """
     try:
         data = json.loads(content)
@@ -88,7 +88,7 @@ def examine(schema: Any, report: DocumentReport, where: NodePath = ()) -> bool:
 
 
 def _refer(data: Any, report: DocumentReport, where: NodePath) -> None:
-    """Report faults that the metaschema can't express: invalid patterns and references."""
+    """Report faults that the metaschema can't express: invalid regular expressions and references."""
     for inner, key, text in _texts(data):
         path = (*where, *inner)
         if key == "pattern" or inner[-2:-1] == ("patternProperties",):

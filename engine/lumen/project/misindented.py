@@ -40,14 +40,16 @@ _What = tuple[str, str, str]
 
 
 class KeyNames(NamedTuple):
-    """All names that a schema declares, and the keys whose children have names of the author's own."""
+    """The names in a schema."""
 
     declared: frozenset[str]
+    """All names of properties, at any depth."""
     open: frozenset[str]
+    """The keys of maps whose own keys are chosen by the author, such as `states`."""
 
 
 def key_names(schema: Mapping[str, Any]) -> KeyNames:
-    """Return the names of a schema's keys."""
+    """Return the names of the keys that a schema declares at any depth."""
     declared, free, waiting = set[str](), set[str](), [schema]
     while waiting:
         item = waiting.pop()
@@ -77,7 +79,10 @@ def _is_open(schema: Any, root: Mapping[str, Any]) -> bool:
 def misindented(
     document: Document, found: Sequence[Complaint], names: KeyNames, judge: CheckedAgain
 ) -> Mapping[Complaint, str]:
-    """Return the complaints that a wrong depth caused: the one to report with its hint, the others without one."""
+    """Return the complaints that wrong indentation caused, each with a hint; an empty hint for those to leave out.
+
+    `found` are all complaints about the document, and `judge` returns those about a changed text.
+    """
     lines, before = lines_of(document.text), Counter(map(_what, found))
     if not document.spans:
         return {}
@@ -124,7 +129,10 @@ def _is_opposite(move: LineMove, other: LineMove) -> bool:
 
 
 def _first(those: Sequence[Complaint], move: LineMove, document: Document, lines: Sequence[str]) -> Complaint:
-    """Return the complaint to report of those that a move removes: about an empty key, else about the moved line."""
+    """Return the complaint to report of those that a move removes.
+
+    That is one about an empty value, else about a missing key, else about the moved line.
+    """
     empty = (c for c in those if _is_empty(c, document))
     missing = (c for c in those if c.missing)
     near = (c for c in those if move.rows[0] in _rows(c, document, lines)[:1])
@@ -132,7 +140,7 @@ def _first(those: Sequence[Complaint], move: LineMove, document: Document, lines
 
 
 def _what(complaint: Complaint) -> _What:
-    """Return a complaint without its place in the file, which a move changes."""
+    """Return the parts of a complaint that do not depend on its place in the file, which a move changes."""
     return complaint.code, complaint.message, complaint.missing
 
 
@@ -145,7 +153,7 @@ def _is_empty(complaint: Complaint, document: Document) -> bool:
 
 
 def _rows(complaint: Complaint, document: Document, lines: Sequence[str]) -> list[int]:
-    """Return the lines in which the keys begin that a complaint may be about, the innermost first."""
+    """Return the indices of the lines in which the keys begin that a complaint may be about, the innermost first."""
     paths: list[NodePath] = [
         complaint.path[:n] for n in range(len(complaint.path), max(len(complaint.path) - 3, 0), -1)
     ]
@@ -213,7 +221,7 @@ def _group(lines: Sequence[str], row: int, complained: set[int]) -> tuple[int, .
 
 
 def _depths(lines: Sequence[str], row: int) -> list[int]:
-    """Return the depths that may have been meant for a line, the nearest first; of two as near, the inner one."""
+    """Return the depths [spaces] that may have been meant for a line, the nearest first; of two as near, the inner."""
     here, inner, outer = indent(lines[row]), set[int](), set[int]()
     lowest = here
     for i in range(row - 1, -1, -1):
@@ -235,16 +243,16 @@ def _depths(lines: Sequence[str], row: int) -> list[int]:
 
 
 def _starts(line: str) -> tuple[int, int]:
-    """Return how many spaces a line begins with, and the width of its list hyphen with the spaces after it."""
+    """Return the number of spaces before a line, and the width of its list hyphen with the spaces after it."""
     found = _BEGINNING.match(line)
     assert found
     return len(found[1]), len(found[2] or "")
 
 
 def _is_sensible(lines: Sequence[str], row: int, depth: int, names: KeyNames, empty: bool, about: NodePath) -> bool:
-    """Return True if a move keeps the schema's keys in the schema's maps, and the author's names in theirs.
+    """Return True if a move keeps the schema's keys in maps of such keys, and the author's names in maps of names.
 
-    `about` is the last key of the complaint; if that key is `empty`, any name may move under it.
+    `about` is the last key of the complaint; if its value is `empty`, any name may move under it.
     """
     found = _BEGINNING.match(lines[row])
     assert found

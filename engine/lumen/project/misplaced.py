@@ -1,4 +1,4 @@
-"""Files that are in the folder of another kind of file, or are not read because their names are only nearly right."""
+"""Find files in the folder of another kind of file, and files that are not read because their names are mistyped."""
 
 import os
 import re
@@ -15,15 +15,15 @@ _ENDING = re.compile(r"(?P<stem>.+?)\s*\.(?:(?P<yaml>ya?ml)|(?P<other>md|json|xm
 
 
 class Misnamed(NamedTuple):
-    """The path of a file or folder as it is and as it should be, both from the project's root."""
+    """The path of a file or folder as it is and as it should be, from the project's root; `/` ends that of a folder."""
 
     there: str
     meant: str
 
 
 def misnamed_in(root: Path, folder: str) -> Iterator[Misnamed]:
-    """Yield files of a project folder whose ending is nearly right, and folders with capital letters."""
-    endings, listed = endings_in(folder), listed_in(root, folder)
+    """Yield files of a project folder with a mistyped ending, such as `.yml`, and folders with capital letters."""
+    endings, listed = endings_in(folder), _listed(root, folder)
     for name in listed:
         path = f"{folder}/{name}" if folder else name
         lowered = path.lower()
@@ -37,7 +37,7 @@ def misnamed_in(root: Path, folder: str) -> Iterator[Misnamed]:
 
 
 def misnamed_for(root: Path, folder: str, name: str) -> Misnamed | None:
-    """Return the misnamed file that was probably meant to have that name in a folder of the project."""
+    """Return the misnamed file, or folder around it, that was probably meant to be `FOLDER/NAME`; else None."""
     above = ["", *map(str, reversed(PurePosixPath(folder).parents[:-1])), folder]
     found = (each for one in above for each in misnamed_in(root, one))
     fits = (
@@ -76,7 +76,7 @@ class _Kind(NamedTuple):
     marks: frozenset[str]
     """Keys that identify a file if it has all of them."""
     alone: str = ""
-    """A key that identifies a file by itself; empty if there is none."""
+    """A key that identifies a file by itself; empty if no single key does."""
     only: frozenset[str] = frozenset()
     """Keys that identify a file if it has no others, for a kind that has no keys of its own."""
 
@@ -85,7 +85,7 @@ class _Kind(NamedTuple):
         return self.only or self.marks | {self.alone}
 
     def owns(self, data: Mapping[str, Any]) -> bool:
-        """Return True if data has at least one key of this kind; with `only`, if it has no others."""
+        """Return True if data has at least one key of this kind; for a kind with `only`, if it has no other keys."""
         return data.keys() <= self.only if self.only else not self.keys.isdisjoint(data)
 
     def is_meant(self, data: Mapping[str, Any]) -> bool:
@@ -126,7 +126,7 @@ def _home(kind: str) -> str:
 
 
 def misplaced(data: Any, kind: str, report: DocumentReport) -> bool:
-    """Report data that is of another kind of file and has no key of this kind; return True if it is."""
+    """Return True if data belongs in another kind of file and has no key of this kind; report it then."""
     own = _KINDS[kind]
     if not isinstance(data, Mapping) or own.owns(data):
         return False

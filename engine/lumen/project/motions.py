@@ -34,10 +34,10 @@ def build_motion(
     broken: Collection[str] = (),
     verbs: OwnVerbs = NO_VERBS,
 ) -> MotionDefinition | None:
-    """Return the motion that the data of `motions/NAME.yaml` describes; None if it moves nothing.
+    """Return the motion that the data of `motions/NAME.yaml` describes; None if it has no length or can't be built.
 
-    `motions` are those that it may `play`, built before it; `broken` are names of files that can't be built.
-    `verbs` are the skills that it may begin.
+    `motions` are those that it may `play`, built before it. `broken` are names of motions whose absence is not
+    reported, because their own files have faults. `verbs` are the skills that it may begin.
     """
     if not isinstance(data, Mapping) or not data.get("keyframes"):
         return None
@@ -87,7 +87,7 @@ def build_motions(
 
 
 def countable(data: Any, report: DocumentReport) -> bool:
-    """Return True if there are few enough keyframes to be read; report it if there are too many."""
+    """Return True if the data has at most `MAX_KEYFRAMES` keyframes; report it if there are more."""
     if not isinstance(data, Mapping) or not isinstance(data.get("keyframes"), list):
         return True
     if len(data["keyframes"]) <= MAX_KEYFRAMES:

@@ -1,4 +1,4 @@
-"""Check for numbers that can't be calculated with: `.nan` and `.inf` of YAML, and numbers beyond a float's range."""
+"""Check for numbers that are no use in a calculation: YAML's `.nan` and `.inf`, and numbers that are too extreme."""
 
 from collections.abc import Callable, Iterator, Mapping
 from math import isfinite, isinf, isnan
@@ -32,9 +32,9 @@ def finite(value: float, report: DocumentReport, path: NodePath) -> bool:
 
 
 def without_extremes(data: Any, report: DocumentReport, endless: Callable[[NodePath], bool]) -> Any:
-    """Return the data of the report's document without keys whose numbers can't be used, each of them reported.
+    """Return the data without keys whose numbers a controller can't use; each is reported, and the document changed.
 
-    `endless` returns True for the paths at which a number may be infinite.
+    `data` is that of the report's document. `endless` returns True for the paths at which a number may be infinite.
     """
     doomed = {_key(path) for path, number in numbers_in(data, ()) if not _usable(number, report, path, endless)}
     if not doomed:

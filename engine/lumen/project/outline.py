@@ -10,7 +10,7 @@ from lumen.language.machines import StateKind
 from lumen.project.document_report import DocumentReport
 
 THIS = "."
-"""The target that is the state itself, which is left and entered again."""
+"""The target for the state itself, which the transition leaves and enters again."""
 
 DUPLICATE_ID = Code(
     "duplicate-id", "statecharts", ERROR, "two states, or two behaviours that are invoked at once, have the same id"
@@ -59,10 +59,10 @@ class BehaviorOutline:
             self._alias(entry)
 
     def resolve(self, source: OutlinedState, target: str, where: NodePath, written: str = "") -> OutlinedState | None:
-        """Return the state that `target` refers to in a transition of `source`; if it does not exist, report that.
+        """Return the state that `target` refers to in a transition of `source`; report a target that does not exist.
 
-        `written` is the target as the file has it, if that differs. A state that was itself reported as broken is not
-        reported again.
+        `written` is the target as the file has it, if that differs. The name of a state that was removed as broken is
+        not reported.
         """
         if target == THIS:
             found: OutlinedState | None = source
@@ -122,7 +122,7 @@ class BehaviorOutline:
         return did_you_mean(target, known)
 
     def _loop(self, source: OutlinedState, key: str) -> OutlinedState | None:
-        """Return the outermost state with a `for` around the state of that key, unless `source` is inside it too."""
+        """Return the outermost state with a `for` that contains the state of that key but not `source`, or None."""
         inner = [e for e in self.entries.values() if e.path.rpartition(".")[2] == key]
         state, found = (inner[0].parent if inner else None), None
         while state is not None:

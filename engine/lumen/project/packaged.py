@@ -1,4 +1,4 @@
-"""Find the shipped exhibition, the engine's own schemas, and the project that a path, or no path, refers to."""
+"""Find the shipped exhibition, the engine's own schemas, and the project for a given path or for none."""
 
 import os
 import re
@@ -21,7 +21,7 @@ def shipped_root() -> Path:
 
 
 def schema_folder() -> Path:
-    """Return the folder of `KIND.schema.json`; always the engine's own, even if a project has such a folder."""
+    """Return the engine's own folder of `KIND.schema.json`, even if a project has such a folder too."""
     return shipped_root() / "schemas"
 
 

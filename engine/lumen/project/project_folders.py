@@ -8,7 +8,7 @@ from lumen.language.folders import FUNCTIONS_FOLDER, KNOWLEDGE_FOLDER, QUESTIONS
 
 MAIN_FILE, MAIN_KIND = "lumen.yaml", "lumen"
 FLEET_FILE = "fleet.yaml"
-"""The file with the houses and whose orders a robot accepts; lint checks it, and no bundle contains it."""
+"""The file with the houses of a fleet and the keys whose orders a robot accepts. Lint checks it; no bundle has it."""
 
 BEHAVIORS, STORIES, WORDS_FOLDER = "behaviors", "behaviors/stories", "behaviors/words"
 CONTROLLERS = "fuzzy"
@@ -61,12 +61,15 @@ _ENDINGS: Mapping[str, tuple[str, ...]] = {folder.path: folder.endings for folde
 
 
 def endings_in(folder: str) -> tuple[str, ...]:
-    """Return the endings of files that belong to a project in one of its folders; a folder in motions/ is a robot's."""
+    """Return the endings of files that belong to a project in a folder; none for other folders.
+
+    A folder in motions/ counts as the folder of a robot's own motions.
+    """
     return _ENDINGS.get(_shared(folder), ())
 
 
 def is_robots_own(folder: str) -> bool:
-    """Return whether a folder holds the motions of one robot, by its path: `motions/pepper`."""
+    """Return True if a path, such as `motions/pepper`, is the folder of the motions of one robot."""
     above, _, name = folder.partition("/")
     return above == MOTIONS and bool(name) and folder not in KINDS and not {"/", "."} & set(name)
 
@@ -82,7 +85,7 @@ def kind_in(folder: str) -> str:
 
 
 def _shared(folder: str) -> str:
-    """Return the folder for all robots whose files are of the same kind as those of a robot's own folder."""
+    """Return `motions` or `motions/life` for a robot's own folder of such files; any other folder is unchanged."""
     above = folder.rpartition("/")[0]
     if is_robots_own(above) and folder == life_of(PurePosixPath(above).name):
         return LIFE_FOLDER

@@ -1,4 +1,4 @@
-"""Cache the findings in expressions while the names in scope are unchanged: each key typed changes little of a file."""
+"""Cache the findings in expressions while the names in scope are unchanged: an edit changes few expressions."""
 
 from collections.abc import Callable, Hashable, Mapping
 from typing import Any
@@ -13,9 +13,9 @@ Check = Callable[..., list[ExpressionFinding]]
 
 
 class RememberedFindings:
-    """The findings of one file's sources, shared between callers with the same `slot`.
+    """The findings in one file's expressions and templates, shared between callers with the same `slot`.
 
-    `names` are the names in scope for all sources; `given` is any further input of the checks.
+    `names` are the names in scope for all of them, as keywords of the checks; `given` is any further input.
     """
 
     def __init__(self, slot: Hashable, names: Mapping[str, Any], given: Any = None) -> None:
@@ -25,7 +25,7 @@ class RememberedFindings:
     def of(
         self, check: Check, source: str, site: Hashable, around: Callable[[], Mapping[str, Any]]
     ) -> list[ExpressionFinding]:
-        """Return the findings of a check; `site` identifies the further names in scope, which `around` returns."""
+        """Return the findings of a check; `around` returns the further names in scope, which `site` identifies."""
         key = check, source, site
         known = self._found.get(key)
         if known is None:

@@ -21,7 +21,10 @@ HOW = "add `replay: warn` or `replay: refuse`, or delete it"
 
 
 def read_replay_check(data: Mapping[str, Any], report: DocumentReport) -> ReplayCheck:
-    """Return how saved files are checked; a setting without effect is reported."""
+    """Return how saved files are checked against recorded visits.
+
+    A setting without effect is reported. A faulty `budget` is reported and replaced by the default.
+    """
     said, mode = data["reload"], data["reload"].get("replay", "")
     budget = duration(said, "budget", report, ("reload",), positive=True)
     if budget is not None and budget > MAX_BUDGET:

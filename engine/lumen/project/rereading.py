@@ -1,8 +1,8 @@
 """Parse a changed document again, but only the block around the lines that have changed.
 
-All other lines are blanked except those that fix the indentation of the block and what follows it. The usual parser
-reads the block, with its places, and the result is inserted into the previous document. If that might differ from a
-complete parse, the whole file is parsed instead.
+All other lines become empty, except the keys around the block and the one after it, which keep the indentation. The
+usual parser reads the block, with its places, and the result is inserted into the previous document. If that might
+differ from a complete parse, the whole file is parsed instead.
 """
 
 import re
@@ -19,7 +19,10 @@ from lumen.project.yaml_composer import TooLargeError, compose
 
 Spans = dict[NodePath, NodeSpan]
 Read = Callable[[str, yaml.Node, NodePath, yaml.Node], tuple[Any, Spans] | None]
-"""Returns the data and places of the node at a path, from the text that holds it; None if it has a fault."""
+"""A function that returns the data and the places of the node at a path; None if it has a fault.
+
+Its arguments are the text that holds the node, the node, its path, and the node of its key.
+"""
 
 _OUTER, _NEXT = "outer", "next"
 _FAR_REACHING = re.compile(r"[\r\ufeff]|(?m:^%|^<<<<<<< )|(?<![^\s\[{,:-])&[\w-]")
@@ -27,7 +30,10 @@ _FAR_REACHING = re.compile(r"[\r\ufeff]|(?m:^%|^<<<<<<< )|(?<![^\s\[{,:-])&[\w-]
 
 
 def reread(before: Document, text: str, read: Read) -> Document | None:
-    """Return the document of a text of which some lines have changed; None if the whole text must be parsed."""
+    """Return the document of `text`, some lines of which differ from `before`; None if it must be parsed as a whole.
+
+    `read` converts the changed block.
+    """
     old, new = lines_of(before.text), lines_of(text)
     if len(old) != len(new) or new[-1] or before.dropped or _FAR_REACHING.search(text):
         return None

@@ -17,7 +17,7 @@ def read_journal(data: Mapping[str, Any], report: DocumentReport) -> JournalRete
 
 
 def read_record(data: Mapping[str, Any], report: DocumentReport) -> RecordingSettings:
-    """Return which part of the past is recorded; a value that can't be used is reported and left out."""
+    """Return which part of the past is recorded, and how much is kept; a faulty value is reported and left out."""
     said = data["record"]
     numbers = {key: said[key] for key in ("keep", "size") if key in said and finite(said[key], report, ("record", key))}
     ring = duration(said, "ring", report, ("record",))

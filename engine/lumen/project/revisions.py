@@ -14,7 +14,8 @@ from lumen.upkeep.regular_files import MEGABYTE
 def files_at(root: Path, revision: str) -> dict[str, bytes] | None:
     """Return the files of the project at `root` at a revision; None if git has no such revision.
 
-    Raises UsageError if git is not installed, if `root` is not in a repository, or if the project was too large.
+    A file that was too large is `Unreadable`. Raises UsageError if git is not installed, if `root` is not in a
+    repository, or if the whole project was too large.
     """
     where = _git(root, "rev-parse", "--show-prefix")
     if where is None:

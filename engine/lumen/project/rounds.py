@@ -51,7 +51,7 @@ class Rounds:
                 self.by_place[entry.where] = name, key
 
     def variables(self, where: NodePath) -> dict[str, str]:
-        """Return the names that are defined for an expression at this path, each with what replaces it."""
+        """Return the names that a `for`, `hears` or `shared` defines at this path, each with its replacement."""
         found = dict(self.known)
         for place, (name, key) in self.by_place.items():
             if where[: len(place)] == place and where[len(place) : len(place) + 1] in _WITHIN:
@@ -74,7 +74,7 @@ class Rounds:
         return ForEach(each, data["as"], key, data.get("shuffle", False), data.get("most"), where)
 
     def elsewhere(self, name: str) -> str:
-        """Return the state whose `for` defines this name; empty if none does."""
+        """Return the dotted path of the state whose `for` defines this name; empty if none does."""
         return next((".".join(map(str, at[1::2])) for at, (known, _) in self.by_place.items() if known == name), "")
 
     def _sound(self, entry: OutlinedState) -> bool:

@@ -32,11 +32,13 @@ class RuleWord(NamedTuple):
 
 
 class Mention(NamedTuple):
-    """The names in one proposition: `term` is None after `any`, which needs none."""
+    """The names in one proposition, such as `FaceXLoc is very Negative`."""
 
     variable: RuleWord
     term: RuleWord | None
+    """None after `any`, which needs no term."""
     concluded: bool
+    """True if the proposition comes after `then`."""
 
 
 class RuleText(NamedTuple):
@@ -45,6 +47,7 @@ class RuleText(NamedTuple):
     antecedent: Antecedent
     consequents: tuple[Proposition, ...]
     weight: float
+    """From 0 to 1; 1 if the rule names none."""
     mentions: tuple[Mention, ...]
 
 

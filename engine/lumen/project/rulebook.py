@@ -21,8 +21,8 @@ UNKNOWN_VARIABLE = Code(
 class Rulebook:
     """Reads the rules of one file; `inputs` and `outputs` are the usable variables.
 
-    A name is reported as unknown if it is not in the file. A name that belongs to something broken was reported there,
-    and only makes its rule invalid.
+    A name is reported as unknown only if the file does not have it. A rule with the name of a broken variable or term
+    is left out without a report, because that fault was reported already.
     """
 
     def __init__(
@@ -48,7 +48,7 @@ class Rulebook:
         return blocks
 
     def combination(self, differing: Mapping[str, Any]) -> Operators:
-        """Return the file's operators, replaced by those of the block."""
+        """Return the operators of a block: the file's, except for those that `differing` replaces."""
         operators = {**self.operators, **differing}
         names = ("conjunction", "disjunction", "implication")
         given = {name: operators[name] for name in names if name in operators}

@@ -1,7 +1,7 @@
-"""Find the project that a user wants to check, and the one for a run: never the installed exhibition itself.
+"""Find the project that a user wants to check, and the one to run, which is never the installed exhibition itself.
 
-If there is no project here or above, `lumen run` plays a copy of the shipped exhibition in the user's state folder. The
-other commands about a run find the same copy.
+If neither the working directory nor a parent has a project, `lumen run` plays a copy of the shipped exhibition in the
+user's state folder. The other commands about a run find the same copy.
 """
 
 import hashlib
@@ -17,7 +17,7 @@ from lumen.project.project_folders import MAIN_FILE, PROJECT_FOLDERS
 from lumen.upkeep.own_folders import state_folder
 
 MAX_FOLDERS = 5_000
-"""The maximum number of folders that are searched, in a fraction of a second; projects are usually near the top."""
+"""The maximum number of folders to search, in a fraction of a second."""
 NAMED = 8
 _PASSED_OVER = ("node_modules", "__pycache__", "site-packages")
 
@@ -36,9 +36,10 @@ def own_project(path: str | Path | None = None) -> Path:
 
 
 def projects_below(folder: Path) -> Iterator[Path]:
-    """Yield the folders with a lumen.yaml, the upper ones first, then by name.
+    """Yield the folders below `folder` that have a lumen.yaml: level by level, by name within a level.
 
-    Hidden and installed folders are skipped, and so are folders inside a project.
+    Hidden folders, folders of installed packages and folders inside a found project are skipped. At most `MAX_FOLDERS`
+    folders are searched.
     """
     waiting, looked = [folder], 0
     while waiting and looked < MAX_FOLDERS:

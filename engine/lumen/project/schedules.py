@@ -29,7 +29,7 @@ _SEXAGESIMAL = re.compile(r"[1-9][0-9]?:[0-5][0-9]")
 
 
 class MisreadTimeError(Exception):
-    """Raised if a time of day can't be read; the message has the reason, and `hint` what to write."""
+    """Raised if a time of day can't be read. The message is the reason; `hint` shows a valid form."""
 
     def __init__(self, message: str, hint: str = TIME_HINT) -> None:
         super().__init__(message)

@@ -66,7 +66,7 @@ def check_schema(document: Document, kind: str, report: DocumentReport, verbs: O
 
 
 def misfits(kind: str, text: str) -> int | None:
-    """Return the number of schema findings in a trial version of a text; None if it is not YAML."""
+    """Return the number of faults that a kind's schema finds in a text; None if the text is no YAML or too deep."""
     try:
         found = _judged(kind, NO_VERBS, text)
     except RecursionError:
@@ -75,7 +75,10 @@ def misfits(kind: str, text: str) -> int | None:
 
 
 def load_schema(kind: str, verbs: OwnVerbs = NO_VERBS) -> Any:
-    """Return the JSON Schema of a kind of file, as data, with what features and the project's own `verbs` add to it."""
+    """Return the JSON Schema of a kind of file as data, with the additions of features and of the project's `verbs`.
+
+    Raises LumenError if the schema's file is damaged or missing.
+    """
     file = schema_folder() / f"{kind}.schema.json"
     try:
         schema = json.loads(file.read_bytes())
@@ -143,12 +146,12 @@ def _did(verbs: Mapping[str, VerbRow]) -> dict[str, Any]:
 
 
 def faults(data: Any, schema: Mapping[str, Any]) -> list[Complaint]:
-    """Return what is wrong with data by a schema, which must be valid itself."""
+    """Return the faults that a JSON Schema, which must be valid itself, finds in data."""
     return _faults(JsonSchema(schema), data)
 
 
 def schema_faults(schema: Any) -> list[Complaint]:
-    """Return what is wrong with a JSON Schema itself."""
+    """Return the faults of a JSON Schema itself, except those that its metaschema can't find."""
     return _faults(_schema("message", NO_VERBS), schema)
 
 
@@ -175,7 +178,7 @@ def _key_names(kind: str, verbs: OwnVerbs) -> KeyNames:
 
 
 def _judged(kind: str, verbs: OwnVerbs, text: str) -> list[Complaint] | None:
-    """Return what the schema of that kind refuses in a text; None if it is not YAML."""
+    """Return the faults that the schema of that kind finds in a text; None if it is not YAML."""
     document = read_text(text)
     if not document:
         return None
@@ -231,7 +234,7 @@ def _judge(
 
 
 def _emptied(found: list[Complaint], report: DocumentReport) -> dict[NodePath, NodePath]:
-    """Return the nodes with unknown keys after an empty key to which they probably belong, each with the empty one."""
+    """Return the misplaced nodes that probably belong under an empty key before them, each with that key's path."""
     empty = {
         c.about[:-1]: c.path for c in found if c.code == WRONG_TYPE and c.path and report.document.value(c.path) is None
     }
@@ -245,7 +248,7 @@ def _emptied(found: list[Complaint], report: DocumentReport) -> dict[NodePath, N
 
 
 def _outdented(found: list[Complaint], report: DocumentReport) -> set[NodePath]:
-    """Return the nodes that are invalid in their place and that the node before them lacks."""
+    """Return the nodes that are invalid in their place and missing in the node before them."""
     wrong = {path[:n] for c in found if not c.missing for path in (c.about, c.path) for n in range(1, len(path) + 1)}
     missed = ((c, (*c.about[:-1], c.missing)) for c in found if c.missing and c.about)
     return {beside for c, beside in missed if beside in wrong and _stands_after(report, beside, c.about)}

@@ -1,4 +1,4 @@
-"""Describe what a schema's validator refuses in a student's words."""
+"""Word the errors of a JSON Schema validator so that a student understands them."""
 
 import re
 from collections.abc import Collection, Iterable, Mapping
@@ -31,7 +31,7 @@ _TRUTHS = {"yes": "true", "y": "true", "on": "true", "no": "false", "n": "false"
 
 
 def node(path: NodePath) -> str:
-    """Return the name of the node at that path for a message."""
+    """Return the name of the node at that path for a message: `say` in backquotes, `item 2 of` its list, or `this`."""
     if not path:
         return "this"
     if isinstance(path[-1], str):
@@ -135,7 +135,7 @@ _JSON_TYPES = {dict: "object", list: "array", str: "string", int: "number", floa
 
 
 def _transition(value: Any, wanted: Collection[str], path: NodePath) -> str:
-    """Return what to write in place of a transition that lacks its state, or its time or event."""
+    """Return a hint for a transition that lacks its state, or its time or event; empty for any other value."""
     key, holder = path[-1] if path else "", path[-2] if len(path) > 1 else ""
     if value is None and (key in _MOMENTS or holder in _WAITED):
         moment = _MOMENTS[key] if key in _MOMENTS else _moment(holder, str(key))
@@ -185,7 +185,7 @@ def _flow(value: Any) -> str:
 
 
 def _instead(value: Any, wanted: Iterable[str], schema: Mapping[str, Any]) -> str:
-    """Return what to write in place of a value of the wrong type that is nearly right."""
+    """Return a hint for a value of the wrong type that is nearly right, such as a number in quotes; else empty."""
     if "boolean" in wanted and (truth := _truth(value)):
         return f"write `{truth}`: in YAML 1.2 `{value}` is a text"
     if {"number", "integer"} & set(wanted) and isinstance(value, str):
@@ -239,7 +239,7 @@ _COLOURS = {
 
 
 def _colour(value: Any, allowed: Collection[str]) -> str:
-    """Return what to write in place of a colour that has no name in CSS."""
+    """Return a hint for a colour that has no name in CSS; empty if the value is not meant as a colour."""
     if "turquoise" not in allowed or not isinstance(value, str):
         return ""
     if re.fullmatch(r"[0-9a-fA-F]{6}", value):
@@ -248,7 +248,7 @@ def _colour(value: Any, allowed: Collection[str]) -> str:
 
 
 def _unit(unit: str) -> str:
-    """Return where to declare the unit of a number that has one."""
+    """Return the rest of a hint: where to declare the unit that was written after a number; empty for other units."""
     kind = "angle" if unit in ("°", "deg", "rad") else "length" if unit in ("m", "cm", "mm") else ""
     name = "deg" if unit == "°" else unit
     return f", and at the top of the file `units: {{{kind}: {name}}}`" if kind else ""

@@ -87,7 +87,7 @@ def read_sections(data: Mapping[str, Any], report: DocumentReport) -> dict[str, 
 
 
 def is_section(key: str) -> bool:
-    """Return whether a feature reads the section of this key."""
+    """Return True if a feature reads the section of this key, such as `modules.show`."""
     return key in table("sections")
 
 
@@ -131,7 +131,7 @@ def _schema(where: str) -> Mapping[str, Any]:
 
 
 def _has(data: Mapping[str, Any], key: str) -> bool:
-    """Return whether the data has a section, by its key such as `modules.show`."""
+    """Return True if the data has the section of this key, such as `modules.show`."""
     node: Any = data
     for step in key.split("."):
         if not isinstance(node, Mapping) or step not in node:

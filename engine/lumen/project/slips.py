@@ -1,4 +1,7 @@
-"""Find slips of the keyboard and of word processors in one line, each with the corrected line."""
+"""Find typing mistakes, and signs that word processors change, in one line; each with the corrected line.
+
+The public functions get the text of a line and its index in the file, from 0.
+"""
 
 import json
 import re
@@ -11,7 +14,7 @@ KEY = r"[A-Za-z_][\w.]*"
 
 
 class Slip(NamedTuple):
-    """A slip at a place that counts from 1."""
+    """A typing mistake, with its correction. Its line and column count from 1."""
 
     line: int
     column: int
@@ -109,7 +112,7 @@ class _Line(NamedTuple):
         return Slip(self.row + 1, column + 1, length, *words, {self.row: right})
 
     def quoted(self, start: int, end: int, message: str, hint: str = "") -> Slip:
-        """Return the slip that a text lacks its quotes."""
+        """Return the slip that the text from `start` to `end` lacks quotes."""
         value = self.text[start:end]
         plain = '"' not in value and "\\" not in value
         meant = f'"{value}"' if plain else "'" + value.replace("'", "''") + "'"
@@ -152,7 +155,7 @@ def quotes(text: str, index: int) -> Iterator[Slip]:
 
 
 def _early(line: _Line, marks: LineMarks, first: Mark, last: Mark) -> Iterator[Slip]:
-    """Yield slips about a quoted text that is followed by something."""
+    """Yield slips about a quoted text that is followed by more text; `first` and `last` are its quotes."""
     (sign, start), text = first, line.text
     rest = text[last.column + 1 :]
     if found := re.search(rf"(?P<end>,) *(?:{KEY}: +)?$", text[start : last.column]):  # the quote opens the next text

@@ -66,7 +66,7 @@ class _Shelf(NamedTuple):
 
     @classmethod
     def of_files(cls, files: Mapping[str, Path]) -> Self:
-        """Return the shelf of these files; reading one that is unreadable raises UsageError."""
+        """Return the shelf of these files, by name; `read` raises UsageError for an unreadable one."""
         return cls(lambda name: parse_file(files[name]), files.keys())
 
     @classmethod

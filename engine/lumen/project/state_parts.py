@@ -20,10 +20,11 @@ from lumen.project.sections import read_fields
 
 
 class ReadButton(NamedTuple):
-    """A button, and the data of its actions, None if the behaviour waits for its event elsewhere."""
+    """A button of a state."""
 
     button: Button
     actions: Any = None
+    """The data of its actions; None if it only sends an event, which the behaviour handles elsewhere."""
 
 
 def read_buttons(data: Any, where: NodePath, state: str) -> tuple[ReadButton, ...]:
@@ -70,7 +71,10 @@ def build_properties(data: Mapping[str, Any], report: DocumentReport, read: Read
 
 
 def unbound_conditions(report: DocumentReport, functions: KnownFunctions) -> ReadCondition:
-    """Return a reader of conditions for a file that does not declare the names in them."""
+    """Return a reader of conditions for a file that does not declare the names in them, such as a story.
+
+    The reader returns None for a faulty condition, which it reports.
+    """
 
     def read(source: str, where: NodePath) -> Expression | None:
         findings = check_expression(source, context=None, functions=functions)

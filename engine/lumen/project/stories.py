@@ -52,7 +52,8 @@ def build_story(
 ) -> Story | None:
     """Return the story in the data of `behaviors/stories/NAME.yaml`, or None if it has no steps.
 
-    `verbs` are those that the project declares; `functions` are its functions, which the story's properties may call.
+    Steps that can't be read are reported and left out. `verbs` are those that the project declares; `functions` are its
+    functions, which the story's properties may call.
     """
     if not isinstance(data, Mapping) or not data.get("steps"):
         return None
@@ -141,7 +142,7 @@ def _operator(body: Mapping[str, Any]) -> VisitorAction:
 
 
 def _moment(text: str, report: DocumentReport, where: NodePath) -> Schedule | None:
-    """Return a time of day, which may include the day; several times are reported, because a story begins once."""
+    """Return a moment, which may include the day; None for a faulty text or several times, which are reported."""
     found = schedule(text, report, where)
     if found and len(found.times) > 1:
         hint = "write one of them here, and a separate story for each of the others"
@@ -163,7 +164,7 @@ def _visitor(body: Any, report: DocumentReport, where: NodePath) -> VisitorActio
 
 
 def _did(data: Any, verbs: OwnVerbs) -> dict[str, Mapping[str, Any]]:
-    """Return the added verb in `did: blink`, `did: {blink: 3}` or `did: {blink: {times: 3}}`, and its arguments."""
+    """Return the arguments in `did: blink`, `did: {blink: 3}` or `did: {blink: {times: 3}}`, by the added verb."""
     if isinstance(data, str):
         return {data: {}}
     return {verb: given_arguments(verbs.all[verb], given) for verb, given in data.items()}

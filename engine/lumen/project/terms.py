@@ -37,7 +37,7 @@ _PLAIN = (Identifier, Unary, Logic, Conditional)
 
 
 def check_formula(text: str, names: Sequence[str], report: DocumentReport, path: NodePath) -> bool:
-    """Return True if the text at `path` is a formula of x and the variables called `names`; report what is wrong."""
+    """Return True if the text at `path` is a formula of x and the variables called `names`; report its faults."""
     try:
         tree = parse_expression(text)
     except ExpressionError as error:
@@ -108,7 +108,7 @@ def build_terms(
 
 
 def plain_name(name: str, report: DocumentReport, path: NodePath) -> None:
-    """Report a name that is a keyword in rules."""
+    """Report the name of a variable or term, at `path`, if it is a keyword in rules."""
     if name.lower() in KEYWORDS:
         report(RESERVED_NAME, path, f"`{name}` is a keyword in rules", hint="choose another name", key=True)
 

@@ -1,4 +1,4 @@
-"""Texts in braces that a comma splits: YAML reads their rest as a key, as in `{en: Oh, step back}`."""
+"""Find texts in braces that a comma splits, as in `{en: Oh, step back}`: YAML reads the rest as a key."""
 
 import json
 from typing import Any
@@ -30,9 +30,9 @@ def whole_text(document: Document, path: NodePath, *, by_language: bool = False)
 
 
 def whole_translation(document: Document, path: NodePath) -> str:
-    """Return `whole_text` if the text is one of several languages, and not the target of an event or a sentence.
+    """Return `whole_text` if the text is in a map by language, and not a target under `on` or `hears`; else "".
 
-    In `say`, a part with a colon in it counts if it can't be a name: `german:` is one.
+    In `say`, a rest with a colon counts too, unless the word before the colon may be a name, as in `german:`.
     """
     whole = whole_text(document, path, by_language=path[-2:-1] == ("say",) and not str(path[-1]).isidentifier())
     key = whole.partition(":")[0]
@@ -51,7 +51,7 @@ def _is_rest(document: Document, path: NodePath, value: Any, by_language: bool) 
 
 
 def _follows(document: Document, path: NodePath) -> str:
-    """Return the character that follows a key in the file."""
+    """Return the first visible character after a key in the file; a colon if the key's place is unknown."""
     if path not in document.spans:
         return ":"
     place = document.place(path, key=True)

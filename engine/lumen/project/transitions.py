@@ -27,7 +27,7 @@ ENDLESS_ALWAYS = Code("endless-always", "statecharts", ERROR, "an `always` would
 
 _OUTSIDE = frozenset(("on", "hears"))
 _OWN = ("done", "error", "after", "at")
-"""The first words of names of internal events."""
+"""The first words in the names of events that the behaviour raises itself."""
 
 PlacedValue = tuple[NodePath, Any]
 
@@ -43,15 +43,16 @@ class TransitionReader:
         self.rows = HearsKeys(report, expressions)
 
     def of(self, entry: OutlinedState) -> tuple[Transition, ...]:
-        """Return the candidates of a state, in the order of the file, without broken ones."""
+        """Return the transitions of a state, in the order of the file, without those that are broken."""
         return tuple(found for key, body in entry.data.items() for found in self._under(entry, key, body))
 
     def targets(
         self, entry: OutlinedState, body: Any, where: NodePath, written: Any = None
     ) -> list[OutlinedState] | None:
-        """Return the states that a target or a list of them names; if one is wrong, report it and return None.
+        """Return the states that a target or a list of targets names.
 
-        `written` is the target as the file has it, if that differs.
+        If one does not exist, or if they can't be active together, report that and return None. `written` is the target
+        as the file has it, if that differs.
         """
         rows = _rows(body, where)
         shown = [text for _, text in _rows(written or body, where)]
@@ -97,7 +98,7 @@ class TransitionReader:
                 yield Transition(entry.path, button.event, (), None, actions, where=button.where)
 
     def _heard(self, entry: OutlinedState, key: str, body: Any, where: NodePath) -> Iterator[Transition]:
-        """Yield the candidates of a row of `hears`."""
+        """Yield the transitions of a row of `hears`; the row of a key that can't be read is marked as pruned."""
         way, names = self.rows.read(key, where)
         if way == "" and not names:
             self.report.pruned.add(where)
@@ -143,9 +144,9 @@ class TransitionReader:
                 yield replace(found, delay=delay, schedule=schedule, exact=exact, where=place)
 
     def _one(self, entry: OutlinedState, row: Any, where: NodePath, event: str, leaves: bool) -> Transition | None:
-        """Return a candidate; None if it is broken, which is reported.
+        """Return a transition; None if it is broken, which is reported.
 
-        `leaves` is true if an event, or a candidate before it with a guard, keeps it from repeating forever.
+        `leaves` is true if an event, or an earlier transition with a guard, keeps an `always` from repeating forever.
         """
         if isinstance(row, str):
             row, place = {"target": row}, where
@@ -204,8 +205,8 @@ _Nested = TypeVar("_Nested")
 def rivals(states: Sequence[_Nested], kind: Callable[[Any], str]) -> tuple[_Nested, _Nested] | None:
     """Return two states that can't be targets together; None if all can.
 
-    From each state the search ascends: if two of them reach a state that is not parallel from different children, they
-    are rivals. A history counts as everything in its parent.
+    Two states are rivals if they are in different children of a state that is not parallel. A history and any other
+    state in the history's parent are rivals too. `kind` returns the kind of a state, as in `StateKind`.
     """
     came: dict[int, tuple[Any, _Nested]] = {}
     outer: Sequence[Any] = states

@@ -18,7 +18,7 @@ LENGTHS: Mapping[str, float] = {"m": 1.0, "cm": 0.01, "mm": 0.001}
 
 
 class JointUnits(NamedTuple):
-    """The units in which a file gives the positions of joints: the names of its angle and of its length."""
+    """The names of the units in which a file gives the positions of joints."""
 
     angle: str = "rad"
     length: str = "m"
@@ -28,7 +28,7 @@ class JointUnits(NamedTuple):
         return "" if joint in body.hands else self.length if joint in body.slides else self.angle
 
     def factor(self, joint: str, body: Body) -> float:
-        """Return one unit of a joint in SI: [rad], [m], or the opening of a hand."""
+        """Return one unit of a joint's position in SI: [rad], [m], or 1 for the opening of a hand."""
         return {**ANGLES, **LENGTHS}.get(self.name(joint, body), 1.0)
 
 

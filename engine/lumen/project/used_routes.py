@@ -1,4 +1,4 @@
-"""The routes that come with Lumen and that a project's behaviours use without rows of their own."""
+"""Find the routes that come with Lumen and that a project's behaviours use without rows of their own."""
 
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import replace
@@ -16,11 +16,14 @@ from lumen.project.settings import Settings
 
 
 class _Uses(NamedTuple):
-    """The events that a behaviour hears and the routes it publishes to, with first places; the events it makes."""
+    """The events and routes that a behaviour uses."""
 
     heard: Mapping[str, NodePath]
+    """The first place of each event for which it has a transition."""
     published: Mapping[str, NodePath]
+    """The first place of each route that it publishes to."""
     made: frozenset[str]
+    """The events that it declares, raises or sends, and those of its buttons."""
 
 
 def used_routes(

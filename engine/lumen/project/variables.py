@@ -97,7 +97,10 @@ class _Variables:
         return False
 
     def defuzzified(self, variable: Variable, spec: Mapping[str, Any]) -> Variable:
-        """Return the output with its own defuzzification, or the file's; weighted ones are added up by default."""
+        """Return the output with its own settings of defuzzification, or else the file's.
+
+        By default, sets are combined by their maximum, and values for a weighted defuzzifier by their unbounded sum.
+        """
         said = {**self.operators, **spec}
         method = said.get("defuzzifier", "centroid")
         usual = "unbounded-sum" if method in WEIGHTED_DEFUZZIFIERS else "maximum"
@@ -110,7 +113,7 @@ class _Variables:
         )
 
     def fits(self, variable: Variable) -> None:
-        """Report terms that the variable can't use: a value if it needs a set, or a set if it needs a value."""
+        """Report terms that the variable can't use: values if it needs sets, and sets if it needs values."""
         output = self.side == "outputs"
         weighted = output and variable.weighted
         for term in variable.terms.values():

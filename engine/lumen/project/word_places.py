@@ -23,9 +23,9 @@ def report_word(
 def place_of(document: Document, path: NodePath, text: str, offset: int, length: int) -> Place:
     """Return the place of `text[offset : offset + length]`, where `text` is the scalar at `path`.
 
-    The text is followed through quotes, folded lines and blocks by its visible characters. If that fails (at an
-    escape), or if the document has no source, the place is that of the whole text. At the end of the text, it is that
-    of the character after it.
+    Its visible characters are found one after the other, through quotes, folded lines and blocks. If that fails, as at
+    an escape, or if the document has no source, the place is that of the whole text. If no visible character is left at
+    `offset`, the place is that of the character after the text.
     """
     whole = document.place(path)
     columns = _columns(document, whole, text)
@@ -41,7 +41,7 @@ def place_of(document: Document, path: NodePath, text: str, offset: int, length:
 
 
 def _columns(document: Document, whole: Place, text: str) -> dict[int, tuple[int, int]]:
-    """Return line and column of each visible character of the text; empty if one can't be found."""
+    """Return the line and column of each visible character of the text, by its index; empty if one is not found."""
     lines = lines_of(document.text)
     first = lines[whole.line - 1] if document.text and whole.line <= len(lines) else ""
     line, column = whole.line, whole.column

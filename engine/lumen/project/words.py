@@ -16,7 +16,7 @@ def build_words(data: Any, report: DocumentReport, *, name: str) -> Words | None
 
 
 def tables(data: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the tables that both a words file and a behaviour may have, by key."""
+    """Return the tables that both a words file and a behaviour may have: `phrases`, `answers` and `lists`."""
     return {
         "phrases": {key: _phrases(body) for key, body in (data.get("phrases") or {}).items()},
         "answers": {key: _answers(rows) for key, rows in (data.get("answers") or {}).items()},

@@ -1,7 +1,7 @@
 """Compose the nodes of a YAML file from libyaml's events.
 
-libyaml's own composer is recursive: 60,000 brackets end the process. Here depth and number of nodes are counted with
-each event, an alias as many nodes as it refers to, and reading stops before too large a file is parsed any further.
+libyaml's own composer is recursive: 60,000 brackets end the process. Here the depth and the number of nodes are counted
+with each event, and reading stops at a limit. An alias counts as all nodes of the node that it refers to.
 """
 
 from collections.abc import Callable, Mapping
@@ -21,7 +21,7 @@ PLAIN_TAGS = frozenset((_TEXT, _LIST, _MAP))
 
 
 class TooLargeError(Exception):
-    """Raised if the file is too large; `mark` is the place at which it exceeds a limit, which the message names."""
+    """Raised if the file exceeds a limit, which the message names; `mark` is the place of the excess, or None."""
 
     def __init__(self, what: str, mark: Any) -> None:
         super().__init__(what)
@@ -43,8 +43,8 @@ _OLD_BREAKS = "\x85\u2028\u2029"
 def shielded(text: str) -> tuple[str, Mapping[int, str]]:
     """Replace the characters that only YAML 1.1 reads as line breaks; return the text and the map to undo it.
 
-    Places stay the same, because one character replaces one. The new ones come from the private use area and are not in
-    the text.
+    Each becomes one character of the private use area that is not in the text, so all places stay the same. The map is
+    in the form of `str.translate`.
     """
     old = [sign for sign in _OLD_BREAKS if sign in text]
     if not old:
@@ -57,7 +57,7 @@ def shielded(text: str) -> tuple[str, Mapping[int, str]]:
 def compose(text: str) -> yaml.Node | None:
     """Return the root of the file's only document; None if it is empty. Tags of plain scalars are not resolved.
 
-    Raises TooLargeError, or a YAMLError if the text is not YAML.
+    Raises TooLargeError, UnknownAliasError, or another YAMLError if the text is not YAML.
     """
     if text.count("%TAG") > MAX_TAG_DIRECTIVES:
         raise TooLargeError(f"more than {MAX_TAG_DIRECTIVES} tag directives", None)
@@ -127,7 +127,7 @@ class _Composer:
         return node
 
     def _named(self, event: Any, node: yaml.Node) -> yaml.Node:
-        """Return the node, after storing it under its anchor, which may be defined again (YAML 1.2, 3.2.2.2)."""
+        """Store the node under its anchor, if any, and return it. Anchors may be reused (YAML 1.2, 3.2.2.2)."""
         if event.anchor is not None:
             self._anchors[event.anchor] = node
             self._sizes.pop(event.anchor, None)

@@ -1,4 +1,4 @@
-"""Describe what is wrong with a file that is not YAML, and where, in a student's words."""
+"""Describe the faults of a file that is not YAML so that a student understands them, and find their places."""
 
 import re
 from collections.abc import Callable, Sequence
@@ -52,7 +52,7 @@ def merge_conflict(file: str, text: str) -> Diagnostic | None:
 
 
 def not_utf8(file: str, content: bytes, at: int) -> Diagnostic:
-    """Return the finding about bytes that are not UTF-8 from offset `at` on."""
+    """Return the finding about a file whose first byte that is not UTF-8 is at offset `at`."""
     if _is_utf16(content):
         return _utf16(file)
     before = lines_of(content[:at].decode("utf-8-sig", "replace"))
@@ -124,7 +124,7 @@ def syntax_error(file: str, text: str, error: Exception) -> Diagnostic:
 
 
 def _misfits(file: str) -> Callable[[str], int | None] | None:
-    """Return a function that counts what the file's schema refuses in a text; None for a file without a schema."""
+    """Return a function that counts the faults which the file's schema finds in a text; None without a schema."""
     from lumen.project.schema import misfits  # it imports what imports this module
 
     kind = kind_of(file)

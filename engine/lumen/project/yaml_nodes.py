@@ -129,7 +129,7 @@ class NodeReader:
         self.diagnostics.append(DECIMAL_COMMA.at(place, message, f"write a point: {number}"))
 
     def duplicate(self, key: yaml.Node, path: NodePath) -> None:
-        """Report a duplicate key; those of one map are one finding."""
+        """Report a duplicate key; all duplicate keys of one map have one cause, so they become one finding."""
         first = self.spans[(*path, key.value)].key
         hint = f"delete one of them: the first one is on line {first.line}" if first else ""
         related = (Related(first, "the first one is here"),) if first else ()
@@ -137,7 +137,7 @@ class NodeReader:
         self.diagnostics.append(DUPLICATE_KEY.at(self.place(key), message, hint, related=related, cause=cause))
 
     def too_deep(self, key: yaml.Node, first: yaml.Node, depth: int) -> None:
-        """Report a key in the same column as the keys that belong below it."""
+        """Report a key in the same column as the keys that belong below it; `first` is the first of those."""
         message = f"`{key.value}` is in the same column as `{first.value}` below it, so some keys are written twice"
         blanks = "2 spaces" if key.start_mark.column > 1 else "the spaces"
         self.say(DUPLICATE_KEY, key, message, f"delete {blanks} before `{key.value}`")
@@ -161,11 +161,11 @@ class NodeReader:
 
 
 _new = tuple.__new__
-"""Makes a named tuple of its fields in half the time: each node of each file has a place."""
+"""A constructor of named tuples that needs half the time of a call: each node of each file has a place."""
 
 
 def _decimal(before: yaml.Node, key: yaml.Node, value: yaml.Node) -> str:
-    """Return the number that a value and an empty key after its comma were meant to be; empty if they are none."""
+    """Return the number in `x: 1,5`, which YAML reads as the value `1` and an empty key `5`; empty for other text."""
     if key.start_mark.index != before.end_mark.index + 1 or value.start_mark.index != value.end_mark.index:
         return ""
     plain = all(isinstance(node, yaml.ScalarNode) and not node.style for node in (before, key, value))
@@ -190,7 +190,7 @@ def _begun_anew(node: yaml.Node) -> tuple[yaml.Node, yaml.Node] | None:
 
 
 def _decimals(node: yaml.SequenceNode) -> list[str]:
-    """Return the numbers of a list in which every other comma has no blank after it; empty for any other list."""
+    """Return the numbers of a list such as `[1,5, 2,5]`, written with decimal commas; empty for any other list."""
     items = node.value
     if len(items) < 4 or len(items) % 2 or not node.flow_style:
         return []

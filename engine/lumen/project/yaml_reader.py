@@ -21,9 +21,9 @@ EMPTY_FILE = Code("empty-file", "text", ERROR, "a file is empty")
 
 
 def parse(file: str, content: bytes) -> tuple[Document | None, list[Diagnostic]]:
-    """Return the document in `content`, or None, and its faults. No content of the file raises an error.
+    """Return the document in `content` and its faults; None instead of a document if it can't be parsed.
 
-    The result depends on nothing else, so it is cached until the file changes.
+    No content raises an error. The result is cached until the file changes, so callers must not change the document.
     """
     document, found = memoize(("parse", file), content, lambda: _read(file, content))
     return document, [*found]

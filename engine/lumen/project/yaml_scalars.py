@@ -1,4 +1,4 @@
-"""Plain scalars by the core schema of YAML 1.2."""
+"""Resolve plain scalars by the core schema of YAML 1.2."""
 
 import re
 from math import inf, nan
@@ -18,7 +18,7 @@ MAX_DIGITS = 250
 
 
 def resolve(text: str) -> Any:
-    """Return the value of a plain scalar by the YAML 1.2 core schema (10.3.2)."""
+    """Return the value of a plain scalar by the YAML 1.2 core schema (10.3.2): None, a bool, a number or the text."""
     if text in _NULL:
         return None
     if text in _BOOL:

@@ -63,7 +63,10 @@ def plain_value(value: ComputedValue) -> Any:
 
 
 def plain_phrases(table: Mapping[str, Iterable[str]], *, anyhow: bool = False) -> Any:
-    """Return phrases by language, or a list if they serve all languages; `anyhow` if they match although negated."""
+    """Return phrases as data: by language, or as a list if they serve all languages.
+
+    `anyhow` is true for phrases that match even if a visitor negates them; it becomes a key of its own.
+    """
     if set(table) == {""} and not anyhow:
         return list(table[""])
     return {language: list(rows) for language, rows in table.items()} | ({"anyhow": True} if anyhow else {})
@@ -124,13 +127,13 @@ def _written(quantity: Quantity, value: Any) -> Any:
 
 
 def single(rows: list[TransitionData]) -> Any:
-    """Return the only row, or the list; a row with nothing but one target becomes that text."""
+    """Return the rows in their shortest form: a row with only one target becomes a text, one row alone has no list."""
     shown = [row["target"] if set(row) == {"target"} and isinstance(row["target"], str) else row for row in rows]
     return shown[0] if len(shown) == 1 else shown
 
 
 def quoted(value: Any) -> Any:
-    """Return the data whose value is this JSON: each text becomes an expression for that text."""
+    """Return data that evaluates to this JSON: each text becomes an expression for it, infinity and NaN become None."""
     match value:
         case str():
             return unparse(Literal(value))

@@ -8,7 +8,7 @@ MAX_FILE_BYTES = 4_000_000
 """The maximum size of another tool's file [bytes]; those that people draw are a hundredth of that."""
 
 PlaceOfPath = Callable[[NodePath], Place]
-"""Returns the place of the node at a path of a behaviour's file."""
+"""A function that returns the place of the node at a path of a behaviour's file."""
 
 LOST, CHANGED = "not-carried-over", "carried-over-differently"
 CODE_MEANINGS = {
@@ -74,7 +74,11 @@ def broken(place: Place, code: str, message: str, hint: str = "") -> ForeignFile
 
 
 class ExportReport:
-    """Collects what an export leaves out, and the words that only Lumen understands, each once, at its first place."""
+    """Collects the parts that an export leaves out or changes, and the words that only Lumen understands.
+
+    Each of these words is reported once, at its first place. `place` returns the place of a node in the behaviour's
+    file, and `hint` is the hint about foreign words.
+    """
 
     def __init__(self, place: PlaceOfPath, hint: str = "other tools ignore it") -> None:
         self.place, self.hint = place, hint

@@ -9,7 +9,10 @@ _FACTORS = {"": 1.0, "ms": 1.0, "s": 1e3, "min": 60e3, "m": 60e3, "h": 3600e3}
 
 
 def milliseconds(text: str) -> float | None:
-    """Return the delay [ms]; None if the text is no valid delay. A bare number is in ms, as in several tools."""
+    """Return the delay [ms]; None if the text is not a valid delay or exceeds `MAX_DELAY`.
+
+    A bare number is in ms, as in several tools. An empty text is no delay: 0.
+    """
     match = _DELAY.fullmatch(text.strip()) if text.strip() else None
     if match is None:
         return None if text.strip() else 0.0

@@ -11,7 +11,10 @@ _CYRILLIC_WORD = re.compile(rb"[\xc0-\xff\xa8\xb8]{2,}")
 
 
 def text_of(file: str, content: bytes, findings: ConversionFindings) -> str:
-    """Return the text; a guessed encoding is reported. Different bytes never become the same letters."""
+    """Return the text of a file without its byte order mark; a guessed encoding is reported in `findings`.
+
+    The guess is Windows-1251 or Latin-1. Bytes that it leaves undefined become backslash escapes.
+    """
     if content.startswith((BOM_UTF16_LE, BOM_UTF16_BE)):
         return content.decode("utf-16", errors="replace")
     try:

@@ -19,7 +19,10 @@ SAME_ANGLE = 1e-9
 
 
 def within_limits(curves: JointCurves, body: Body, findings: ConversionFindings) -> JointCurves:
-    """Return the curves, cut if a joint would leave its coupled range, or its range on the path between two keys."""
+    """Return the curves, cut wherever a joint would leave its coupled range, or its range between two keys.
+
+    Each cut is reported in `findings`. After `MAX_FITS` passes the curves are returned as they are.
+    """
     for _ in range(MAX_FITS):
         far = beyond_limits(_definition(curves), body)
         if not far:

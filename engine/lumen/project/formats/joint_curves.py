@@ -21,17 +21,19 @@ class CurvePoint(NamedTuple):
     straight: bool = False
     """The curve to this point is a straight line."""
     handle_in: BezierHandle = (0.0, 0.0)
-    """A handle (dt [s], da [rad]) as in `lumen.language.motions.Keyframe`; if dt is 0, Lumen chooses it."""
+    """A handle (dt [s], da [rad]) as in `lumen.language.motions.Keyframe`; if dt is 0, Lumen chooses the handle."""
     handle_out: BezierHandle = (0.0, 0.0)
 
 
 class MotionFile(NamedTuple):
-    """A file of another tool. `timeline` names one of several motions in it; `hands` are joints that open and close."""
+    """A file of another tool that holds motions."""
 
     name: str
     content: bytes
     timeline: str = ""
+    """The name of one of several motions in the file."""
     hands: Collection[str] = ()
+    """The joints that open and close: their values are openings, 0 to 1, instead of angles."""
 
 
 JointCurves = Mapping[str, list[CurvePoint]]

@@ -16,9 +16,10 @@ def tell_losses(
     findings: ConversionFindings,
     within: Callable[[XmlElement], bool] = lambda _: True,
 ) -> None:
-    """List the parts of an element that are not carried over, also inside those child elements that the table has.
+    """Report the attributes and child elements that the table does not carry over, at every depth that it covers.
 
-    If `within` returns False for an element, only its name is checked.
+    Children whose names have an entry in the table are searched too. If `within` returns False for a child, only the
+    child's name is checked.
     """
     waiting = [element]
     while waiting:

@@ -20,7 +20,7 @@ MIN_KEY_DISTANCE = 1e-3
 
 @dataclass(frozen=True)
 class MotionWriter:
-    """Converts curves to the data of a motion file for a body; what that body can't do is reported to `findings`.
+    """Converts curves to the data of a motion file for a body; movements beyond its abilities go to `findings`.
 
     With `retime`, keys that a joint can't reach in time are delayed.
     """
@@ -30,7 +30,10 @@ class MotionWriter:
     retime: bool = False
 
     def data(self, curves: JointCurves, description: str) -> dict[str, Any]:
-        """Return the file's data. The motion begins at the robot's current pose, and the robot keeps the last one."""
+        """Return the file's data, with `keyframes` empty if no joint moves.
+
+        The motion begins at the robot's current pose, and the robot keeps the last one.
+        """
         possible = {joint: self._possible(joint, points) for joint, points in self._known(curves).items()}
         known = self._later({joint: points for joint, points in possible.items() if points})
         lines = all(point.straight for points in known.values() for point in points)
@@ -56,7 +59,7 @@ class MotionWriter:
         }
 
     def _known(self, curves: JointCurves) -> JointCurves:
-        """Return the curves of joints that the body has, one for each motor."""
+        """Return the curves of joints that the body has; of two joints with one motor, only the leading one."""
         found: dict[str, list[CurvePoint]] = {}
         for joint, points in curves.items():
             leader = self.body.shared.get(joint, "")
@@ -71,7 +74,7 @@ class MotionWriter:
         return found
 
     def _possible(self, joint: str, points: list[CurvePoint]) -> list[CurvePoint]:
-        """Return the points in the order of time, each within the joint's limits."""
+        """Return the points with each angle cut to the joint's limits, without those that come too early."""
         kept: list[CurvePoint] = []
         for point in points:
             if point.time < 0:
@@ -136,7 +139,7 @@ class MotionWriter:
 
 
 def _bent(points: Iterable[CurvePoint]) -> list[CurvePoint]:
-    """Return the points with handles at a third of the chord, wherever the curve to a point is straight."""
+    """Return the points as Bézier keys: a straight piece gets handles at a third of it, which keep it straight."""
     bent = list(points)
     for i, (one, two) in enumerate(pairwise(bent)):
         if two.straight:

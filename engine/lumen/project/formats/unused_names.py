@@ -6,7 +6,8 @@ from collections.abc import Callable
 def unused_name(stem: str, is_taken: Callable[[str], bool], many: int) -> str:
     """Return the stem, or else the first of `stem_2`, `stem_3`, … that is not taken.
 
-    `many` is how many names there may be: after the first hundred, the numbers increase in steps of that size.
+    After the first hundred numbers, only every `many`th one is tried. `many` is the number of names there may be, so
+    the search is short even if all of them share the stem.
     """
     name, number = stem, 1
     while is_taken(name):

@@ -21,7 +21,7 @@ _ATTRIBUTE = re.compile(rb"""\s+([^\s=>]+)\s*=\s*(?:"[^"]*"|'[^']*')""")
 
 @dataclass(slots=True)
 class XmlElement:
-    """An element; its tag is `state` in the namespace given to `parse_xml`, `{namespace}name` in any other.
+    """An element; its tag is a plain name in the namespace given to `parse_xml`, `{namespace}name` in any other.
 
     Names of attributes have the same form. `text` is the characters directly inside, without those of children.
     """
@@ -32,19 +32,20 @@ class XmlElement:
     children: list["XmlElement"] = field(default_factory=list)
     parts: list[str] = field(default_factory=list)
     source: bytes = field(default=b"", repr=False)
-    """The file in UTF-8, in which `start` is the offset of the tag; empty if it is unknown."""
+    """The bytes of the whole file; empty if they are unknown."""
     start: int = 0
+    """The offset of the element's tag in `source` [bytes]."""
 
     @property
     def text(self) -> str:
         return "".join(self.parts)
 
     def get(self, name: str, otherwise: str = "") -> str:
-        """Return the value of an attribute without surrounding whitespace."""
+        """Return the value of an attribute, or `otherwise` if it is absent, without surrounding whitespace."""
         return self.attributes.get(name, otherwise).strip()
 
     def attribute_place(self, name: str) -> Place:
-        """Return the place of an attribute's name; that of the element if the file is in another encoding."""
+        """Return the place of an attribute's name; that of the element if the name is not found, as in UTF-16."""
         tag = _TAG.match(self.source, self.start)
         local = name.rpartition("}")[2].encode()
         at = tag.end() if tag else len(self.source)
@@ -80,7 +81,7 @@ def parse_xml(file: str, content: bytes, namespace: str = "", *, most: int = MAX
 
 
 class _XmlReader:
-    """The handlers of Expat, with the elements that are open, from the root down."""
+    """The handlers of Expat; `open` are the elements that have begun and not ended, from the root down."""
 
     def __init__(self, file: str, namespace: str, most: int) -> None:
         self.file, self.namespaces, self.most = file, ("", namespace), most

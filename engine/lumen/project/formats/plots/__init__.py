@@ -1,4 +1,4 @@
-"""Plots of controllers and motions: from a value to a drawing (`PlotSheet`), and from a drawing to an image."""
+"""Plots of controllers and motions: first the content as a `PlotSheet`, then the sheet as an image."""
 
 from lumen.project.formats.plots.controller_plot import controller_sheet, curves_sheet
 from lumen.project.formats.plots.drawing import PLOT_ENDINGS, draw

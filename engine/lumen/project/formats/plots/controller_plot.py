@@ -19,9 +19,10 @@ CURVE_RESOLUTION = 1000
 
 
 def controller_sheet(controller: ControllerDefinition) -> PlotSheet:
-    """Return a sheet with the membership functions, then for each output a curve, a surface over two inputs, or slices.
+    """Return a sheet with the membership functions of each variable, then each output over the inputs it depends on.
 
-    There is one slice for each input, if an output depends on more than two.
+    An output of one input is a curve, one of two inputs a surface. With more inputs there is one curve for each, while
+    the others rest.
     """
     survey = Survey(controller, CURVE_RESOLUTION)
     panels = [memberships(variable) for variable in variables(controller)]
@@ -33,9 +34,9 @@ def controller_sheet(controller: ControllerDefinition) -> PlotSheet:
 
 
 def curves_sheet(title: str, controllers: Mapping[str, ControllerDefinition]) -> PlotSheet:
-    """Return a sheet with the outputs of several versions of a controller in the same panels.
+    """Return a sheet with the outputs of several versions of a controller, given by label, in the same panels.
 
-    The first version decides which inputs and outputs are drawn.
+    The first version decides which inputs and outputs are drawn. Raises StopIteration if there is no version.
     """
     first = next(iter(controllers.values()))
     panels = []
@@ -58,7 +59,7 @@ def variables(controller: ControllerDefinition) -> Iterator[Variable]:
 
 
 def memberships(variable: Variable, marks: tuple[PlotMark, ...] = ()) -> PlotPanel:
-    """Return a panel of a variable's terms over its range: constants as upright lines, formulas of inputs left out."""
+    """Return a panel of a variable's terms over its range. Constants are upright lines; formulas are left out."""
     low, high = ends(variable)
     xs = tuple(low + (high - low) * i / (POINTS - 1) for i in range(POINTS))
     lines = []
@@ -80,7 +81,7 @@ def axis(variable: Variable) -> PlotAxis:
 
 
 def ends(variable: Variable) -> tuple[float, float]:
-    """Return the ends of the range; an infinite end is replaced by one that covers the parameters of the terms."""
+    """Return the lower and upper end of a variable's range; an infinite end becomes one that all its terms fit in."""
     if isfinite(variable.minimum) and isfinite(variable.maximum):
         return variable.minimum, variable.maximum
     said = [p for term in variable.terms.values() for p in term.parameters if isfinite(p)] or [-1.0, 1.0]
@@ -124,7 +125,7 @@ def _curve(survey: Survey, output: Variable, name: str) -> tuple[tuple[float, ..
 
 
 def _height(output: Variable) -> PlotAxis:
-    """Return the upright axis of an output, scaled to the curve because the output may use only a part of its range."""
+    """Return the vertical axis of an output, scaled to its curve: an output may use only a part of its range."""
     return PlotAxis(_label(output))
 
 

@@ -35,9 +35,9 @@ _STYLE: dict[Any, Any] = {
 
 
 def draw(sheet: PlotSheet, ending: str) -> bytes:
-    """Return the sheet as a PNG or SVG file, depending on the ending; the same sheet gives the same bytes.
+    """Return the sheet as the bytes of an image file; `ending` is one of `PLOT_ENDINGS`.
 
-    Raises MissingExtraError if matplotlib is not installed.
+    The same sheet gives the same bytes. Raises MissingExtraError if matplotlib is not installed.
     """
     demand("plot", "a plot", "matplotlib")
     logging.getLogger("matplotlib").setLevel(logging.ERROR)

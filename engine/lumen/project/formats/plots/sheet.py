@@ -14,17 +14,17 @@ class PlotAxis:
 
 @dataclass(frozen=True, slots=True)
 class PlotLine:
-    """A curve."""
+    """A curve through points, or only the points."""
 
     xs: tuple[float, ...]
     ys: tuple[float, ...]
     """The values; NaN is a gap in the curve."""
     label: str = ""
     style: int = 0
-    """The number of the line style; styles differ also in grey."""
+    """The number of the line style, counted modulo the styles that there are; they differ in dashes and shade."""
     filled: bool = False
     points: bool = False
-    """Whether to draw only dots."""
+    """Draw a dot at each point and no line."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,9 +35,9 @@ class PlotMark:
     """Its coordinate on the axis that it crosses."""
     label: str = ""
     level: bool = False
-    """Whether it is horizontal; else it is upright."""
+    """Draw the line horizontally instead of vertically."""
     strong: bool = False
-    """Whether it marks a result."""
+    """Draw the line heavier, for a result."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,9 +73,11 @@ class PlotPanel:
 
 @dataclass(frozen=True, slots=True)
 class PlotSheet:
-    """Panels in rows of `columns`; `note` is printed below them."""
+    """The panels of one image."""
 
     title: str
     panels: tuple[PlotPanel, ...]
     columns: int
+    """The number of panels in a row."""
     note: str = ""
+    """A line of text below the panels."""
