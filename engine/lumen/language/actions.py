@@ -1,7 +1,7 @@
 """The actions of `entry`, `do`, `exit` and `actions`: one class for each verb of the YAML.
 
-Verbs without expressions are their own commands (`Play`, `Posture`, …); the others hold expressions and templates that
-a step evaluates. `where` is the action's path in its document, for diagnostics; it does not count in equality.
+A verb without expressions is a command itself (`Play`, `Posture`, …). The classes here are the others: a step evaluates
+their expressions and templates. `where` is a node's path in its document, for diagnostics; it is not compared.
 """
 
 from collections.abc import Iterator, Mapping
@@ -20,7 +20,7 @@ class Expression:
     where: NodePath = field(default=(), compare=False)
     """Its path in the document."""
     written: str = field(default="", compare=False)
-    """The author's text if it differs from `source`: `question.ask`, which a `for` replaces by a path; else empty."""
+    """The author's text, if it differs from `source`, as if a `for` replaces `question.ask` by a path; else empty."""
 
     @property
     def shown(self) -> str:
@@ -58,7 +58,7 @@ class SayText:
 
 @dataclass(frozen=True, slots=True)
 class PublishBody:
-    """`publish`: a body on a route."""
+    """`publish`: send a message with that body on a route."""
 
     route: str
     body: ComputedValue = None
@@ -81,7 +81,7 @@ def context_key(way: str) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Raise:
-    """`raise`: an event for this machine, before any from outside."""
+    """`raise`: an event for this machine, which it processes before any event from outside."""
 
     event: str
     data: ComputedValue = None
@@ -93,7 +93,7 @@ PARENT = "parent"
 
 @dataclass(frozen=True, slots=True)
 class Send:
-    """`send`: an event for this machine, after `delay` [s]."""
+    """`send`: an event for this machine or another, after a delay."""
 
     event: str
     """The name of the event."""
@@ -101,7 +101,7 @@ class Send:
     delay: float | Template = 0.0
     """The delay [s]; a template, such as `{{ context.patience }}s`, is evaluated when the action is performed."""
     id: str = ""
-    """The id by which `cancel` can withdraw it."""
+    """The id by which `cancel` can withdraw the event; empty for none."""
     to: str = ""
     """The id of an invoked behaviour, PARENT for the invoking one, or a robot of the house; empty for this one."""
 
@@ -145,7 +145,7 @@ class Parallel:
 
 @dataclass(frozen=True, slots=True)
 class AskQuestion:
-    """`ask`, in `do` only: speak the answer to the question; without one `within` [s], perform `otherwise`."""
+    """`ask`, in `do` only: speak the answer to a question. If no answer comes `within` [s], perform `otherwise`."""
 
     question: Expression
     within: float

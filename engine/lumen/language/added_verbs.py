@@ -1,4 +1,4 @@
-"""The verbs that features and the files of a project add: their rows, the schemas of their data, and their results."""
+"""The verbs that features and files of a project add: their rows, the schemas of their arguments, and their results."""
 
 from collections.abc import Callable, Iterator, Mapping
 from functools import cache
@@ -10,7 +10,7 @@ from lumen.language.diagnostics import NodePath
 from lumen.language.events import RESULT
 
 UNUSABLE = VerbRow("")
-"""The row of a verb whose file is faulty. That is reported there, so behaviours may use the verb with any data."""
+"""The row of a verb whose file is faulty. Behaviours may use it with any data: only the file's fault is reported."""
 
 
 @runtime_checkable
@@ -30,17 +30,20 @@ def added_verbs() -> Mapping[str, VerbRow]:
 
 
 def added_row(command: Do) -> VerbRow | None:
-    """Return the row of a verb: of the project's own, else of a feature; None if there is no such verb."""
+    """Return the row of a command's verb: the project's own row, else a feature's; None if no feature has the verb."""
     return command.row or added_verbs().get(command.skill)
 
 
 def argument_schema(row: VerbRow) -> dict[str, Any]:
-    """Return the JSON Schema of the arguments; properties that it does not name are refused unless it allows them."""
+    """Return the JSON Schema of the arguments. It refuses unnamed arguments unless the row's schema allows them."""
     return {"additionalProperties": False, **row.arguments, "type": "object"}
 
 
 def written_schema(row: VerbRow) -> dict[str, Any]:
-    """Return the JSON Schema of the verb's data in the YAML: its arguments, or the short form; anything if unusable."""
+    """Return the JSON Schema of the verb's data in the YAML: a map of its arguments, or the short form.
+
+    The short form is the value of `short_argument`; for a verb that needs no arguments, it is null or true.
+    """
     if row == UNUSABLE:
         return {}
     whole, short = argument_schema(row), short_argument(row)
@@ -55,14 +58,17 @@ def written_schema(row: VerbRow) -> dict[str, Any]:
 
 
 def short_argument(row: VerbRow) -> str:
-    """Return the name of the argument that the short form gives; empty for a verb without a short form."""
+    """Return the name of the argument whose value can be written alone, as in `blink: 3`; else an empty text.
+
+    It is the only required argument, if its schema has a type other than `object`.
+    """
     required, properties = row.arguments.get("required", ()), row.arguments.get("properties", {})
     only = required[0] if len(required) == 1 else ""
     return only if only in properties and properties[only].get("type") not in (None, "object") else ""
 
 
 def arguments_of(row: VerbRow, data: Any) -> dict[str, Any]:
-    """Return the arguments that the YAML's data mean, with the defaults of those that are left out."""
+    """Return the arguments in the verb's YAML data, with defaults for absent ones, in the order of the schema."""
     all = {**_defaults(row.arguments), **given_arguments(row, data)}
     order = [name for name in row.arguments.get("properties", {}) if name in all]
     return {name: all[name] for name in (*order, *(name for name in all if name not in order))}
@@ -75,7 +81,7 @@ def durations_of(row: VerbRow) -> frozenset[str]:
 
 
 def given_arguments(row: VerbRow, data: Any) -> Mapping[str, Any]:
-    """Return the arguments that the YAML's data name: a map, or the value of the short form."""
+    """Return the arguments that are written in the verb's YAML data: those of a map, or the one of the short form."""
     short = short_argument(row)
     return data if isinstance(data, Mapping) else {short: data} if short else {}
 
@@ -93,7 +99,7 @@ def _short_form(row: VerbRow) -> dict[str, Any]:
 
 
 def default_result(row: VerbRow) -> dict[str, Any]:
-    """Return the result of a verb that no code performs: the defaults of its schema."""
+    """Return the result of a verb without code that performs it: the defaults in the schema of its result."""
     return _defaults(row.result)
 
 
@@ -109,14 +115,14 @@ def result_schema(row: VerbRow) -> dict[str, Any]:
 
 
 def usual_result(command: BodyCommand | None) -> dict[str, Any] | None:
-    """Return the data of `done.command.ID` of a command that ends as usual."""
+    """Return the data of `done.command.ID` of a command that ends with its default result; None if it has none."""
     row = added_row(command) if isinstance(command, Do) else None
     result = default_result(row) if row else None
     return {RESULT: result} if result else None
 
 
 def texts_in(value: Any, path: NodePath = ()) -> Iterator[tuple[NodePath, str]]:
-    """Iterate over the texts in JSON data, each with its path."""
+    """Yield each text in JSON data with its path, which begins with `path`."""
     if isinstance(value, str):
         yield path, value
     elif isinstance(value, Mapping):

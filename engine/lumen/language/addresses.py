@@ -29,7 +29,10 @@ def public(url: str) -> str:
 
 
 def unescaped(url: str) -> str:
-    """Return the spelling of characters that would end a name or a password too early; empty if it has none."""
+    """Return how to spell the characters that end a name or a password too early, such as "%2F for `/`".
+
+    The text is empty if the address has no such character in its name and password.
+    """
     signs = [sign for sign in _ENDING if sign in credentials_of(url)]
     return ", ".join(f"{quote(sign, safe='')} for `{sign}`" for sign in signs)
 
@@ -60,7 +63,7 @@ def fault_of_broker(url: str) -> str:
 
 
 def loopback(host: str) -> bool:
-    """Return whether a host is this machine."""
+    """Return True if a host is `localhost` or a loopback address."""
     try:
         return host == "localhost" or ip_address(host).is_loopback
     except ValueError:

@@ -3,4 +3,4 @@
 from typing import Literal
 
 Autonomy = Literal["ask", "alone"]
-"""`ask`: they wait for GO; `alone`: they are performed without it."""
+"""`ask`: such transitions wait for the operator's GO; `alone`: they are performed without it."""

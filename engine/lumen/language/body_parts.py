@@ -9,7 +9,7 @@ from lumen.language.robots import Body
 HEAD, ARMS, LEGS, BODY, VOICE, LEDS, EARS = ("head", "arms", "legs", "body", "voice", "leds", "ears")
 
 PARTS = (HEAD, ARMS, LEGS, BODY, VOICE, LEDS, EARS, *(f"light {name}" for name in LIGHTS))
-"""Each light is a part of its own; `leds` is the part of motions that set any, which follow one another."""
+"""Each light is a part of its own. `leds` is owned by a motion that sets lights, so that such motions never overlap."""
 
 WHOLE_BODY = frozenset((HEAD, ARMS, LEGS, BODY))
 """The parts that a robot moves as it wakes, rests or changes its posture. `body` is a trunk that turns."""
@@ -21,7 +21,7 @@ def part_of(body: Body) -> dict[str, str]:
 
 
 def parts_of_motion(motion: MotionDefinition, body: Body) -> frozenset[str]:
-    """Return the parts that a motion uses: those its keys move, arms and legs for its first posture, and its lights."""
+    """Return the parts that a motion uses: those of its joints and lights, and arms and legs if it names a posture."""
     belongs = part_of(body)
     moved = {belongs[joint] for joint in motion.tracks if joint in belongs}
     standing = {ARMS, LEGS} if motion.start else set()
@@ -31,5 +31,5 @@ def parts_of_motion(motion: MotionDefinition, body: Body) -> frozenset[str]:
 
 
 def parts_of_lights(colours: object) -> frozenset[str]:
-    """Return the lights of these groups, as parts."""
+    """Return the parts of the lights in `colours`, a map by group of lights; none for any other value."""
     return frozenset(f"light {name}" for name, _ in lights_of(colours if isinstance(colours, Mapping) else {}))

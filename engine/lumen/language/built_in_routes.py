@@ -1,7 +1,7 @@
 """The routes that come with Lumen: those of Lumen Server in 2015, with the robot's name in their keys.
 
-lumen.yaml of the tour lists all of them with their purposes; `lumen.project.used_routes` gives the others those
-that their behaviours use.
+The lumen.yaml of the tour lists all of them with their purposes. To any other project, `lumen.project.used_routes` adds
+those that its behaviours use.
 """
 
 from collections.abc import Mapping

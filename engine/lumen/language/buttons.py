@@ -32,13 +32,17 @@ class Button:
         return any(text.casefold() == name.strip().casefold() for text in self.label.values())
 
     def replaces(self, other: "Button") -> bool:
-        """Return True if it replaces another one further out: by its label or key, or by its event and data."""
+        """Return True if it replaces a button of an outer state: one with the same label or key, or event and data."""
         same = (self.event, self.data) == (other.event, other.data)
         return same or self.label == other.label or bool(self.key and self.key == other.key)
 
 
 def button_events(state: str, labels: Sequence[Mapping[str, str]]) -> tuple[str, ...]:
-    """Return the events of buttons with actions: `button.STATE.LABEL`, each different, for the buttons of one state."""
+    """Return an event for each button of a state, `button.STATE.LABEL`, for buttons that name none themselves.
+
+    The label is in lower case, with `_` for other characters. A number makes equal names different, and replaces an
+    empty label.
+    """
     found: list[str] = []
     for number, label in enumerate(labels, 1):
         text = re.sub(r"\W+", "_", next(iter(label.values()), "").casefold()).strip("_")

@@ -16,7 +16,7 @@ class Cause(NamedTuple):
     sender: str = ""
     """The program that sent a message, or the person's name if that is known."""
     time: float = 0.0
-    """When it arrived [s since 1970, in UTC]; 0 if no clock was read."""
+    """When the event arrived [s since 1970, in UTC]; 0 if no clock was read."""
 
 
 class MessageOrigin(NamedTuple):
@@ -35,7 +35,7 @@ UNKNOWN_ORIGIN = MessageOrigin()
 """An empty origin: the bus gives the message an id, its own sender and the time."""
 
 PROGRAM, TERMINAL, VISITOR, OPERATOR = "the program", "a terminal", "the visitor", "the operator"
-"""Senders outside an exhibition: a Python program that opened it, a person at a terminal, the visitor, the operator."""
+"""The senders outside an exhibition; `PROGRAM` is the Python program that opened it."""
 UNNAMED_PROGRAM = "a program on the bus"
 """The sender of a message that names neither a person nor a program."""
 PEOPLE = frozenset((TERMINAL, VISITOR, OPERATOR))

@@ -1,7 +1,7 @@
 """Commands as JSON data: in the journal, and in the trace that the brain publishes on the bus.
 
-Both forms come from the classes of `Command` and their fields, so a new command needs no row here. The bodies of
-commands for a robot, spelt as in 2015, are in `robot/command_table.py`.
+Both forms follow from the classes of `Command` and their fields, so a new command needs no row here. The messages with
+commands for a robot, which still have the form of 2015, are in `robot/command_table.py`.
 """
 
 from collections.abc import Mapping, Sequence
@@ -18,7 +18,7 @@ _TRACED: Mapping[str, type] = {kind.__name__.lower(): kind for kind in get_args(
 def command_data(value: Any) -> Any:
     """Return a command in the journal's form, `{Start: {id: d1, command: {Say: {text: Hello}}}}`.
 
-    Fields with their default value are left out: a later Lumen with more fields writes the same for the same.
+    Fields with their default values are left out, so a later Lumen with more fields writes the same data.
     """
     if is_dataclass(value) and not isinstance(value, type):
         said = ((field.name, getattr(value, field.name), _usual(field)) for field in _compared(type(value)))
@@ -47,7 +47,7 @@ def _usual(field: Field[Any]) -> Any:
 
 
 def started(command: Any) -> tuple[str, str, Mapping[str, Any]] | None:
-    """Return the id, the kind (`Say`) and the fields of a command that begins; None for any other."""
+    """Return the id, the kind (`Say`) and the fields of a `Start` in the journal's form; None for any other data."""
     match command:
         case {"Start": {"id": str(id), "command": Mapping() as body}} if body:
             kind, said = next(iter(body.items()))
@@ -56,7 +56,7 @@ def started(command: Any) -> tuple[str, str, Mapping[str, Any]] | None:
 
 
 def traced(command: Command) -> dict[str, Any] | None:
-    """Return a command in the trace's form, `{verb: say, id: d1, text: Hello, …}`; None if no trace contains it."""
+    """Return a `Start` or `Publish` in the trace's form, `{verb: say, id: d1, text: Hello, …}`; None for any other."""
     match command:
         case Start(id, wanted):
             return {"verb": trace_verb(wanted), "id": id, **_said(wanted)}
@@ -71,7 +71,7 @@ def trace_verb(command: BodyCommand) -> str:
 
 
 def from_trace(said: Mapping[str, Any]) -> Command | None:
-    """Return the command of a trace; None if its verb or its fields are unknown."""
+    """Return the command that `traced` wrote; None if its verb or its fields are unknown."""
     given = dict(said)
     verb, id = str(given.pop("verb", "")), str(given.pop("id", ""))
     if verb == "publish":

@@ -1,4 +1,4 @@
-"""Commands of a behaviour: values that a step returns and the edge performs.
+"""Commands of a behaviour: values that a step returns and the runtime performs.
 
 Lengths are in [m], angles in [rad], times in [s]. The robot answers each `Start` with one of the events
 `done.command.ID`, `error.command.ID` or `cancelled.command.ID`.
@@ -35,13 +35,13 @@ class Ask:
     """
 
     question: str
-    """The question, without names of people."""
+    """The question; names of people must be removed from it."""
     language: str = ""
     """The language of the answer."""
     within: float = 0.0
     """The time limit [s]."""
     place: str = ""
-    """The robot's place, or empty."""
+    """The name of the robot's place; empty if it is unknown or has no name."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,7 +53,7 @@ class Play:
 
 @dataclass(frozen=True, slots=True)
 class Posture:
-    """Go to a posture of the robot; `speed` is a fraction of the greatest, in (0, 1]."""
+    """Go to a posture of the robot; `speed` is a fraction of the maximum speed, above 0 and at most 1."""
 
     name: str
     speed: float = 0.5
@@ -92,7 +92,7 @@ class Move:
 
 @dataclass(frozen=True, slots=True)
 class Look:
-    """Turn the head: `yaw` to the left, `pitch` down [rad], as NAO counts them."""
+    """Turn the head to these angles: `yaw` to the left, `pitch` down [rad], as in NAOqi."""
 
     yaw: float = 0.0
     pitch: float = 0.0
@@ -115,7 +115,7 @@ class Volume:
 
 @dataclass(frozen=True, slots=True)
 class PlaySound:
-    """Play a sound file of the project, named from its folder.
+    """Play a sound file of the project, named by its path from the project's folder.
 
     `length` is its duration [s], which the performer reads from the file; it is never in the YAML.
     """
@@ -134,7 +134,7 @@ class Track:
 
 @dataclass(frozen=True, slots=True)
 class Stop:
-    """Stop what is running, while keeping balance."""
+    """Stop all that is running, or one kind of it, without losing balance."""
 
     what: Channel = "all"
 
@@ -197,7 +197,7 @@ class Do:
     arguments: Mapping[str, Any] = field(default_factory=dict)
     """JSON data that fit the schema of the verb's row."""
     sections: Sections = field(default_factory=dict, repr=False, compare=False, metadata={"yaml": False})
-    """The project's sections for the performer, added on the way to the robot; never in YAML or a message."""
+    """The settings in the project's sections, added for the performer; never in YAML or a message."""
     row: VerbRow | None = field(default=None, repr=False, compare=False, metadata={"yaml": False})
     """The row of a verb that a file of the project declares; None for the verb of an installed package."""
 

@@ -14,7 +14,7 @@ from lumen.language.controllers import (
 
 
 def controller_events(controllers: Iterable[ControllerDefinition]) -> dict[str, Any]:
-    """Return the events at thresholds, and the events `controller.NAME` that set the context, with their schemas."""
+    """Return the data schemas of threshold events, and of the events `controller.NAME` that set the context."""
     found: dict[str, Any] = {}
     for controller in controllers:
         outputs = controller.outputs
@@ -29,6 +29,6 @@ def controller_events(controllers: Iterable[ControllerDefinition]) -> dict[str, 
 
 
 def _within(variable: Variable) -> dict[str, Any]:
-    """Return the schema of an output's values."""
+    """Return the JSON Schema of an output's values, which are numbers within its range."""
     ends = {"minimum": variable.minimum, "maximum": variable.maximum}
     return {"type": "number", **{key: end for key, end in ends.items() if isfinite(end)}}

@@ -1,4 +1,4 @@
-"""A fuzzy controller file as values: variables, terms, rules, operators, bindings, and how a head tracks with it."""
+"""A fuzzy controller's file as values: variables, terms, rules, operators, bindings, and settings of head tracking."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -166,7 +166,7 @@ class Activation:
 
 @dataclass(frozen=True, slots=True)
 class Operators:
-    """How the rules of a block combine: T-norm, S-norm, implication, activation."""
+    """The operators of a block's rules: a T-norm for `and`, an S-norm for `or`, the implication, the activation."""
 
     conjunction: str = "minimum"
     disjunction: str = "maximum"
@@ -202,7 +202,7 @@ class OutputBinding:
     joint: str
     """The joint, by name or role."""
     gain: float
-    """The factor, with its sign, from the output to the turn."""
+    """The factor by which the output is multiplied; negative to turn the other way."""
     minimum: float | None = None
     """The lower limit [rad]; None for that of the joint."""
     maximum: float | None = None
@@ -223,7 +223,7 @@ class ContextInput:
 
 @dataclass(frozen=True, slots=True)
 class VolumeBinding:
-    """An output that sets the robot's volume, from 0 to 1; sent again when it has changed by `step`."""
+    """An output that sets the robot's volume, from 0 to 1. It is sent again when it has changed by `step`."""
 
     variable: str
     step: float
@@ -271,7 +271,7 @@ class ThresholdBinding:
     threshold: float
     """The threshold, in the output's unit."""
     rising: bool
-    """Whether it is passed upwards; else downwards."""
+    """True if the event is raised on the way up, False on the way down."""
     hysteresis: float
     """The distance that the output must return before the event can be raised again."""
     where: NodePath = field(default=(), compare=False)
@@ -307,7 +307,7 @@ class TrackingSettings:
     sweep: Mapping[str, float] = field(default_factory=dict)
     """The amplitude of the swing to either side, by joint [rad]."""
     ahead: Mapping[str, float] = field(default_factory=dict)
-    """The angles after the search, by joint [rad]."""
+    """The angles to which joints return after the search, by joint [rad]."""
 
 
 @dataclass(frozen=True)

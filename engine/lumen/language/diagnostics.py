@@ -1,4 +1,4 @@
-"""Findings about a user's files: what is wrong, where, and what would be right."""
+"""Findings about a user's files: each has a message, a place and a hint at the remedy."""
 
 import re
 from collections import Counter
@@ -12,7 +12,7 @@ from lumen.language.counts import counted
 from lumen.language.lookalikes import difference, typed
 
 MIN_FINDINGS_FOR_ROOT = 8
-"""The number of findings with a common root from which on the root is reported instead of each."""
+"""The minimum number of findings with a common root for which one finding about the root replaces them."""
 
 MAX_TEXT_CHARACTERS = 1_000
 """The maximum length of a message or hint [characters]; the middle of a longer one is left out."""
@@ -21,10 +21,10 @@ MAX_RELATED = 5
 """The number of places with the same cause that are shown besides the first."""
 
 MAX_COMPARED_NAMES = 200
-"""The number of names that a misspelt one is compared with, letter by letter."""
+"""The maximum number of names that a misspelt one is compared with; of more, only similar ones are compared."""
 
 MAX_CHANGED_LETTERS = 0.4
-"""The share of a name's letters by which a misspelt one may differ."""
+"""The maximum edit distance between a misspelt name and the right one, as a share of the longer one's letters."""
 
 NodePath = tuple[str | int, ...]
 """The path of a node in a document: keys and indices from its root, as in `("states", "idle", "on", 0)`."""
@@ -80,9 +80,9 @@ class Diagnostic:
     severity: Severity = Severity.ERROR
     related: tuple[Related, ...] = ()
     cause: str = field(default="", compare=False, repr=False)
-    """The one mistake behind several findings; these become one: see `gathered`."""
+    """A key for the mistake: findings with the same code and cause become one, see `gathered`."""
     root: str = field(default="", compare=False, repr=False)
-    """The likely mistake behind many findings: see `gathered`."""
+    """The name of a likely mistake elsewhere that explains many findings: see `gathered`."""
 
     def __post_init__(self) -> None:
         for name, text in (("message", self.message), ("hint", self.hint)):
@@ -144,10 +144,10 @@ def has_errors(diagnostics: Iterable[Diagnostic]) -> bool:
 
 
 def gathered(diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:
-    """Return the findings by file and line, those with the same code and cause as one with related places.
+    """Return the findings sorted by file and line; those with the same code and cause become one with related places.
 
-    A fault of a behaviour that a story repeats is reported in the behaviour. If at least MIN_FINDINGS_FOR_ROOT findings
-    have the same root, or one of them has that root as its cause, the root is reported instead of each.
+    The one that stays is in a behaviour rather than in a story. Findings with the same code and root become one too if
+    there are at least MIN_FINDINGS_FOR_ROOT of them, or if one of them has that root as its cause.
     """
     several = list(dict.fromkeys(diagnostics))
     causes = {(d.code, d.cause) for d in several}
@@ -180,7 +180,7 @@ def _joined(findings: list[Diagnostic], cause: str, many: bool) -> Diagnostic:
 
 
 def nearest(word: object, candidates: Iterable[str]) -> str:
-    """Return the candidate that was probably meant; empty if no candidate is similar."""
+    """Return the candidate that was probably meant by a misspelt word; empty if none is similar."""
     names = set(candidates)
     meant = typed(str(word))
     if meant != word and (equal := next((name for name in sorted(names) if typed(name) == meant), "")):
@@ -197,7 +197,7 @@ def nearest(word: object, candidates: Iterable[str]) -> str:
 
 
 def _is_slip(word: str, meant: str) -> bool:
-    """Return whether few letters differ. If many differ, words can share letters in the same order by chance."""
+    """Return True if few letters differ; words with many different letters may be similar only by chance."""
     word, meant = word.lstrip("-"), meant.lstrip("-")  # of options
     short, long = sorted((word, meant), key=len)
     if long.startswith(short) or long.endswith(short):
@@ -221,7 +221,7 @@ def _alike(word: str, names: set[str]) -> set[str]:
 
 
 def mean(word: object, near: str) -> str:
-    """Return the hint with the word that was probably meant; if the two look equal, also how they differ."""
+    """Return the hint with the word that was probably meant; if the two look the same, it adds the difference."""
     said = difference(str(word), near)
     return f"did you mean `{near}`?" + (f" {said}" if said else "")
 

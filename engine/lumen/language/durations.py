@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from lumen.language.lookalikes import other_sign, typed
 
 MAX_DURATION = 1e9
-"""The longest duration [s], a third of a century: a longer one is a mistake."""
+"""The longest duration that is accepted [s], a third of a century."""
 
 _DURATION = re.compile(r"(\d+(?:\.\d+)?) ?(ms|s|min|h)")
 _SECONDS: Mapping[str, float] = {"ms": 0.001, "s": 1.0, "min": 60.0, "h": 3600.0}
@@ -46,7 +46,7 @@ def duration_hint(text: object) -> str:
 
 
 def seconds(text: object) -> float | None:
-    """Return the duration of `500ms`, `20s`, `1.5s`, `2min` or `1h` [s]; None for other texts and if it is too long."""
+    """Return the duration [s] in a text such as `500ms`, `1.5s`, `2min` or `1h`; None for other or too long ones."""
     match = _DURATION.fullmatch(text) if isinstance(text, str) else None
     duration = float(match[1]) * _SECONDS[match[2]] if match else None
     return duration if duration is not None and duration <= MAX_DURATION else None

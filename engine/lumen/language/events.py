@@ -30,12 +30,12 @@ def _object(**fields: object) -> dict[str, object]:
 
 
 def _said_by() -> dict[str, object]:
-    """Return the schema of data with `by`, the person, which may be absent."""
+    """Return the JSON Schema of data with an optional `by`, the name of a person."""
     return {"type": "object", "properties": {"by": {"type": "string"}}}
 
 
 CUE = "cue"
-"""What a robot raises when a motion comes to words, a sound or a skill: its `motion`, `kind` and `value`.
+"""The event of a robot whose motion reaches words, a sound or a skill; its data are `motion`, `kind` and `value`.
 
 It informs the operator; the behaviour does not receive it.
 """
@@ -53,10 +53,10 @@ MISSED = "missed"
 """The field of `done.command.ID` that names the joints that missed the angles of a motion."""
 
 RESULT = "result"
-"""The field of `done.command.ID` that has what a verb of a feature returned."""
+"""The field of `done.command.ID` with the result of an added verb."""
 
 ARRIVED, LEFT, DOUBTFUL = "arrived", "left", "doubtful"
-"""The events of a robot that has come to a place, has left it, and is no longer sure that it is there.
+"""The events of a robot that has reached a place, has left it, or is no longer sure that it is there.
 
 `place` is the name of the place, and `doubt` the possible error of the robot's believed position [m]. `doubtful` is
 raised when that error exceeds the place's `within`.

@@ -1,4 +1,4 @@
-"""The keys of messages between houses and the centre; no other message passes between their brokers."""
+"""The routing keys of messages between houses and the centre; their brokers exchange no other messages."""
 
 STREAM = "lumen.fleet.log"
 """The stream of incidents and numbers at the centre's broker (docs/fleet-brokers.md)."""
@@ -6,7 +6,7 @@ PRESENCE, INCIDENT, NUMBERS, DESIRED, BUNDLE, ORDER = (
     "fleet.presence", "fleet.incident", "fleet.numbers", "fleet.desired", "fleet.bundle", "fleet.order",
 )  # fmt: skip
 KEPT = (INCIDENT, NUMBERS)
-"""Messages that a centre must receive once, no matter how long it was off."""
+"""The messages that the stream keeps for the centre, so that none is lost or repeated while the centre is off."""
 
 
 def presence_key(house: str, robot: str) -> str:
@@ -25,7 +25,7 @@ def numbers_key(house: str, robot: str) -> str:
 
 
 def desired_key(house: str) -> str:
-    """Return the key on which a house receives what its robots should run."""
+    """Return the key on which a house receives the versions that its robots should run."""
     return f"{DESIRED}.{house}"
 
 
@@ -35,6 +35,6 @@ def bundle_key(house: str) -> str:
 
 
 def robot_of(key: str) -> str:
-    """Return HOUSE/ROBOT of a key from a robot; empty for any other."""
+    """Return `HOUSE/ROBOT` of a key on which a robot reports; empty for any other key."""
     words = key.split(".")
     return "/".join(words[2:4]) if len(words) == 4 else ""

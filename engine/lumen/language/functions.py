@@ -31,7 +31,7 @@ class FunctionDefinition:
     expression: str
     """The expression as the author wrote it."""
     expanded: str
-    """The expression with those of the project's functions that it calls inserted."""
+    """The expression with all calls of the project's functions replaced by their own expressions."""
     examples: tuple[FunctionExample, ...] = ()
 
     @property

@@ -16,7 +16,7 @@ class WordTime(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Gesture:
-    """A movement of arms and head during a phrase: preparation, stroke, hold, and return."""
+    """A movement of arms and head during a phrase: preparation, stroke, hold and retraction."""
 
     name: str
     """Its name in the file."""
@@ -29,18 +29,19 @@ class Gesture:
     duration: float
     """The time at which the joints have returned [s]."""
     mirrored: bool = False
-    """Whether it may also be performed with the other side, by `mirror`."""
+    """True if it may also be performed with the other side, by `mirror`."""
     where: NodePath = field(default=(), compare=False)
     mirror: Mapping[str, tuple[str, float]] = field(default_factory=dict)
-    """The mirror of its joints (`language/mirrors.py`)."""
+    """For each of its joints the opposite one and the factor of the angle, as in `language/mirrors.py`."""
 
 
 @dataclass(frozen=True, slots=True)
 class GestureLibrary:
-    """Gestures, and the phrases by tag and language (`any` for every one) by which a text gets their tags."""
+    """Gestures, and the phrases that select them for a text."""
 
     gestures: tuple[Gesture, ...] = ()
     phrases: Mapping[str, Mapping[str, tuple[str, ...]]] = field(default_factory=dict)
+    """The phrases by tag and language, `any` for all languages; a text that contains one gets its tag."""
 
     def __bool__(self) -> bool:
         return bool(self.gestures)

@@ -16,7 +16,7 @@ class HallPlace:
     y: float
     """The distance to the left of the robot's start [m]."""
     heading: float | None = None
-    """The turn to the left there [rad]; None for any."""
+    """The heading to take there, to the left of the one at the start [rad]; None for any."""
     within: float = DEFAULT_WITHIN
     """The distance within which the robot counts as being there, by its own estimate [m]."""
 

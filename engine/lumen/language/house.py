@@ -8,7 +8,7 @@ DEFAULT_SPACING = 0.6
 
 @dataclass(frozen=True, slots=True)
 class StartPose:
-    """The pose of a robot in the hall at its start: `x`, `y` [m], and its turn to the left [rad]."""
+    """The pose of a robot in the hall at its start: `x` and `y` [m], and `facing`, its turn to the left [rad]."""
 
     x: float = 0.0
     y: float = 0.0
@@ -34,4 +34,4 @@ class RobotSpec:
     stand: str = ""
     """Its stand, which replaces {stand} in routing keys."""
     driver: str = ""
-    """The project's own robot that performs it, `package:Class` or a name in drivers/; empty for none."""
+    """The project's own driver of the robot, `package:Class` or a name in drivers/; empty for none."""

@@ -1,4 +1,4 @@
-"""Values in nested maps: by path, and all of them."""
+"""Read, replace and enumerate values in nested maps and lists."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
@@ -28,7 +28,7 @@ def with_value(data: Any, path: Sequence[str | int], value: Any) -> Any:
 
 
 def values_in(data: Any) -> Iterator[Any]:
-    """Iterate over a value, and over all values of the maps and lists in it."""
+    """Yield a value, and all values in its maps and lists at any depth, in no particular order."""
     waiting = [data]
     while waiting:
         item = waiting.pop()

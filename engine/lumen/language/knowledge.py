@@ -18,7 +18,7 @@ class Passage:
     place: str = ""
     """The place of lumen.yaml that it is about; empty if it is about none."""
     who: tuple[str, ...] = ()
-    """The robots that may say it; empty for all."""
+    """The robots that may use the passage; empty for all."""
     as_of: date | None = None
     """The day on which its author last checked it."""
     until: date | None = None
@@ -28,7 +28,7 @@ class Passage:
     """The path of its file."""
 
     def is_said_by(self, robot: str) -> bool:
-        """Return True if that robot may use it in an answer."""
+        """Return True if that robot may use the passage in an answer."""
         return not self.who or robot in self.who
 
     def is_past(self, today: date) -> bool:
@@ -38,12 +38,10 @@ class Passage:
 
 @dataclass(frozen=True)
 class QuestionSet:
-    """Questions in other words than those of the passages, which tune how similar a question must be.
-
-    They are in `knowledge/questions/NAME.yaml`. `asked` are questions that a passage answers, by its name and by
-    language; `unanswered` are those that no passage answers, by language.
-    """
+    """The test questions of `knowledge/questions/NAME.yaml`, which tune the required similarity of questions."""
 
     name: str
     asked: Mapping[str, Mapping[str, tuple[str, ...]]] = field(default_factory=dict)
+    """Questions that a passage answers, in other words than its own: by the passage's name and by language."""
     unanswered: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    """Questions that no passage answers, by language."""

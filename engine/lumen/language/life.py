@@ -11,7 +11,10 @@ STILL = "still"
 
 NAOQI_SPEECH, NAOQI_BREATHING, NAOQI_BLINKING, OWN_LEGS = "speech", "breathing", "blinking", "legs"
 NAOQI_PARTS = (NAOQI_SPEECH, NAOQI_BREATHING, NAOQI_BLINKING, OWN_LEGS)
-"""The parts of life that a style can leave to NAOqi on a real NAO; OWN_LEGS lets Lumen's sways also move its legs."""
+"""The values under `naoqi` of a style, for a real NAO: the movements that NAOqi performs instead of Lumen.
+
+OWN_LEGS is the exception: it lets Lumen's sways move the legs too.
+"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,7 +28,7 @@ class Sway:
     joints: Mapping[str, float]
     """The amplitudes by joint [rad; hands 0..1]."""
     wanders: bool = False
-    """Whether the movement varies instead of repeating itself exactly."""
+    """True if the movement varies instead of repeating itself exactly."""
     where: NodePath = field(default=(), compare=False)
 
 
@@ -61,7 +64,7 @@ class Blinks:
 
 @dataclass(frozen=True, slots=True)
 class Asides:
-    """As it begins to answer, the head turns by `yaw` [rad] to one side and up by `pitch` for `hold` [s], then back."""
+    """A look aside before an answer: the head turns by `yaw` and up by `pitch` [rad], stays for `hold` [s], returns."""
 
     yaw: float
     pitch: float
@@ -100,12 +103,12 @@ class LifeStyle:
     nods: Nods | None = None
     blinks: Blinks | None = None
     attention: float = 0.0
-    """The time that the robot looks at the place of a touch or a voice [s]; 0 for not at all."""
+    """The time that the robot looks at the place of a touch or a voice [s]; 0 if it never does."""
     eyes: EyeColours = EyeColours()
     asides: Asides | None = None
     settles: Settles | None = None
     naoqi: tuple[str, ...] = ()
-    """Those of `NAOQI_PARTS` that a real NAO leaves to NAOqi."""
+    """Values of `NAOQI_PARTS`."""
 
     @property
     def amplitudes(self) -> Mapping[str, float]:

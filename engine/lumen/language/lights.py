@@ -18,7 +18,7 @@ LIGHT_GROUPS: Mapping[str, tuple[str, ...]] = {
     "left_foot": ("left_foot",),
     "right_foot": ("right_foot",),
 }
-"""NAO's groups of LEDs, each with the lights that are set one by one."""
+"""The groups of NAO's LEDs by name, each with its lights. A light is set as a whole."""
 
 LIGHTS = tuple(name for name, lights in LIGHT_GROUPS.items() if lights == (name,))
 
@@ -76,7 +76,7 @@ def lights_of(groups: Mapping[str, object]) -> Iterator[tuple[str, object]]:
 
 
 def light_fault(group: str, colour: object) -> str:
-    """Return what is wrong with a group or colour, and what would be right; empty if it is valid."""
+    """Return a message about a group or colour that does not exist, with a suggestion; empty if both are valid."""
     if group not in LIGHT_GROUPS:
         return f"there is no light `{group}`: {did_you_mean(group, LIGHT_GROUPS)}"
     if rgb(colour) is not None:

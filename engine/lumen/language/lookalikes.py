@@ -1,4 +1,4 @@
-"""Characters that look like those of a keyboard but differ: letters of other alphabets, invisible ones, minuses."""
+"""Find characters that look like those of a keyboard but differ: foreign letters, dashes, invisible characters."""
 
 import unicodedata
 from collections.abc import Iterator

@@ -27,10 +27,12 @@ class StateKind(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Approval:
-    """A person must approve a transition, `within` this time [s] if it is set; after that, `otherwise` applies."""
+    """The approval of a person that a transition needs."""
 
     within: float | None = None
+    """The time limit [s]; None for none."""
     otherwise: Literal["go", "stay"] = "stay"
+    """The decision when the time is over."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,7 +46,10 @@ class Hears:
     names: tuple[str, ...] = ()
     """Names of `phrases` or `answers`, or paths such as `context.round.entry.right` to phrases of a list's entry."""
     way: Literal["", "not", "asked", "else"] = ""
-    """How the names must be in the sentence: found (empty), negated, within a question, or not at all (`else`)."""
+    """The form in which a sentence must contain one of the names: plainly (empty), negated (`not`) or in a question.
+
+    `else` matches a sentence that no other row matches.
+    """
 
     @property
     def title(self) -> str:
@@ -54,7 +59,7 @@ class Hears:
 
 @dataclass(frozen=True, slots=True)
 class Transition:
-    """A candidate: the transition that is taken on `event` if its guard holds."""
+    """A transition, which is taken on `event` if its guard holds and no earlier one is taken."""
 
     source: str
     event: str = ""
@@ -64,7 +69,7 @@ class Transition:
     guard: Expression | None = None
     actions: tuple[PlacedAction, ...] = ()
     reenter: bool = False
-    """SCXML's `type="external"`."""
+    """True to exit and enter `source` even if all targets are inside it: SCXML's `type="external"`."""
     delay: float | Template | None = None
     """The delay of `after` [s], or a template that gives it when the state is entered."""
     exact: bool = False
@@ -73,7 +78,7 @@ class Transition:
     schedule: Schedule | None = None
     """The times of `at`."""
     approve: Approval | None = None
-    """The approval of a person for which the event waits; steps ignore it."""
+    """The approval of a person, for which the runtime delays the event; steps ignore it."""
     offer: bool = False
     """A language model may also raise its event."""
     hears: Hears | None = None
@@ -86,7 +91,7 @@ class Transition:
 
     @property
     def awaited_time(self) -> str:
-        """`after 20 s` or `at 18:00`; empty if no timer selects it."""
+        """The time in words: `after 20 s` or `at 18:00`; empty if no timer selects the transition."""
         if self.schedule:
             return f"at {self.schedule.text}"
         if isinstance(self.delay, Template):
@@ -94,7 +99,10 @@ class Transition:
         return "" if self.delay is None else f"after {self.delay:g} s"
 
     def caption(self, failed: str) -> str:
-        """Return the trigger in words: its row of `hears`, its time, its event; `done` or `failed` for an end."""
+        """Return the trigger in words: the row of `hears`, the time or the event.
+
+        For the end of an activity it is "done", or the text `failed` after an error.
+        """
         if self.hears:
             return self.hears.title
         if self.exact and not self.timed:
@@ -123,7 +131,7 @@ class ForEach:
     key: str
     """The context key that holds the entry and the entries that are left."""
     shuffle: bool = False
-    """Whether the order is random."""
+    """True for a random order."""
     most: int | None = None
     """The maximum number of entries; None for all."""
     where: NodePath = field(default=(), compare=False)
@@ -144,7 +152,7 @@ class State:
     children: tuple[str, ...] = ()
     """Paths in document order."""
     initial: tuple[str, ...] = ()
-    """The paths that are entered by default; for a history state, those without a history."""
+    """The paths that are entered by default; for a history state, as long as it remembers nothing."""
     deep: bool = False
     entry: tuple[PlacedAction, ...] = ()
     do: tuple[PlacedAction, ...] = ()
@@ -153,15 +161,15 @@ class State:
     """The candidates in document order."""
     invoke: tuple[Invoke, ...] = ()
     output: ComputedValue = None
-    """The data of `done.state.*` for a final state."""
+    """The data of `done.state.*` when this final state is entered."""
     on_reload: str = ""
     resume: Resume = ""
-    """How `do` continues after a history or a restart of the engine; empty to begin anew.
+    """How `do` continues when a history or a restart of the engine enters the state; empty to begin anew.
 
-    `again` begins with the same step, `after` with the next one; `never` does not continue.
+    `again` begins with the interrupted step, `after` with the next one; `never` does not continue.
     """
     life: str = ""
-    """The style of life meanwhile; empty to keep that of the surrounding state."""
+    """The style of life while the state is active; empty for that of the surrounding state."""
     gestures: Literal["none", ""] = ""
     """`none`: the robot speaks without gestures."""
     buttons: tuple[Button, ...] = ()
@@ -171,16 +179,18 @@ class State:
 
     @property
     def name(self) -> str:
-        """Its name in `configuration`: the alias if it has one, else the path."""
+        """The name of the state in `configuration`: its alias if it has one, else its path."""
         return self.alias or self.path
 
 
 @dataclass(frozen=True, slots=True)
 class Answer:
-    """A row of an `answers:` table: phrases by language, and the value (a text, or one per language)."""
+    """A row of an `answers:` table."""
 
     phrases: Mapping[str, tuple[str, ...]]
+    """The phrases by language; those for all languages have an empty key."""
     value: Any
+    """The value of the answer: a text, or texts by language."""
 
 
 @dataclass(frozen=True)
@@ -193,13 +203,13 @@ class MachineDefinition:
     types: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     events: Mapping[str, Any] = field(default_factory=dict)
     phrases: Mapping[str, Mapping[str, tuple[str, ...]]] = field(default_factory=dict)
-    """Its own phrases and those of its `words` files, like `answers` and `lists`."""
+    """The phrases of the behaviour and of its `words` files. The same is true of `answers` and `lists`."""
     answers: Mapping[str, tuple[Answer, ...]] = field(default_factory=dict)
     lists: Mapping[str, tuple[Mapping[str, Any], ...]] = field(default_factory=dict)
     properties: tuple[Property, ...] = ()
     words: tuple[str, ...] = ()
     borrowed: Mapping[tuple[str, str], str] = field(default_factory=dict)
-    """The words file of a table's entry: `("answers", "faq")` from `museum`."""
+    """The words file that an entry of a table comes from: `("answers", "faq")` is from `museum`."""
     renamed: Mapping[str, str] = field(default_factory=dict)
     hash: str = ""
     invoked: Mapping[str, "MachineDefinition"] = field(default_factory=dict, repr=False)
@@ -212,7 +222,7 @@ class MachineDefinition:
     """The phrases that match even if they are negated."""
 
     def __getstate__(self) -> dict[str, Any]:
-        """Return its fields for another process, without values that were derived from them here."""
+        """Return the fields for pickling, without the values that this process derived from them."""
         return {one.name: getattr(self, one.name) for one in fields(self)}
 
     @property

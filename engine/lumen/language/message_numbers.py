@@ -7,7 +7,7 @@ from lumen.language.numbers import is_finite_number
 
 
 def number(value: object) -> float | None:
-    """Return a finite number from a message; None for anything else, and for an integer beyond the range of floats."""
+    """Return a finite number as a float; None for any other value, and for an integer beyond the range of floats."""
     return float(value) if is_finite_number(value) else None
 
 

@@ -1,4 +1,4 @@
-"""A mirror of a body's joints: left and right exchanged, yaws, rolls and sideways movements reversed."""
+"""Mirror a body's joints: exchange left and right, and reverse yaws, rolls and sideways movements."""
 
 from collections.abc import Mapping
 
@@ -15,7 +15,7 @@ _OTHER = {LEFT: RIGHT, RIGHT: LEFT}
 
 
 def mirror_of(body: Body) -> Mirror:
-    """Return the mirror of a body; its roles define which joints are each other's image."""
+    """Return the mirror of a body, for each joint with a role: `left` and `right` are exchanged in the role's path."""
     found = {}
     for path, role in body.roles.paths.items():
         other = body.roles.joint(".".join(_OTHER.get(part, part) for part in path.split(".")))

@@ -18,7 +18,7 @@ class ModuleSettings:
     """The settings of a module in lumen.yaml; with a `command` it is a program of the project's own."""
 
     here: bool = False
-    """Whether `lumen run` runs the module in its own process, or starts its program."""
+    """True if `lumen run` runs the module in its own process, or starts the module's program."""
     options: Mapping[str, Any] = field(default_factory=dict)
     """The module's own options."""
     command: tuple[str, ...] = ()
@@ -28,7 +28,7 @@ class ModuleSettings:
 
     @property
     def own(self) -> bool:
-        """True if it is a program of the project's own."""
+        """True if the module is a program of the project's own."""
         return bool(self.command)
 
 
@@ -48,5 +48,5 @@ def own_module_events(modules: Mapping[str, ModuleSettings]) -> dict[str, Mappin
 
 
 def module_names() -> tuple[str, ...]:
-    """Return the names of all modules, those of Lumen first."""
+    """Return the names of all modules, those of Lumen before those of other installed packages."""
     return tuple(table("modules"))

@@ -12,7 +12,7 @@ SKILL_CUE = "skill"
 
 
 class Interpolation(StrEnum):
-    """The course of a joint towards a key."""
+    """The curve on which a joint moves to a key."""
 
     LINEAR = "linear"
     CUBIC = "cubic"
@@ -48,9 +48,9 @@ class Cue:
     time: float
     """The time from the beginning [s]."""
     kind: str
-    """`say`, `sound`, `leds`, `hold` or `skill`, which begins a skill."""
+    """`say`, `sound`, `leds`, `hold`, or `skill` for a cue that begins a skill."""
     value: object
-    """The value in the file; for a skill its name, `skill`, and its `arguments`."""
+    """The value in the file; for a skill a map of its name (`skill`) and its `arguments`."""
     where: NodePath = field(default=(), compare=False)
 
 
@@ -60,7 +60,7 @@ def skill_cue(command: Do, where: NodePath = ()) -> Cue:
 
 
 def skill_of(kind: object, value: object) -> Do | None:
-    """Return the command that a cue of this kind and value begins; None if it begins no skill."""
+    """Return the command of the skill that a cue of this kind and value begins; None for any other cue."""
     match value:
         case {"skill": str(name), "arguments": Mapping() as arguments} if kind == SKILL_CUE:
             return Do(name, arguments)

@@ -1,4 +1,4 @@
-"""Time as timers count it: whole nanoseconds, so that a hundred times 10 ms is a second to the last digit."""
+"""Time in whole nanoseconds, so that timers add up exactly: a hundred times 10 ms is one second."""
 
 NANOSECONDS = 1_000_000_000
 """The nanoseconds in a second."""
@@ -22,5 +22,5 @@ def in_seconds(nanoseconds: int) -> float:
 
 
 def to_the_nanosecond(seconds: float) -> float:
-    """Return the time of the nearest whole nanosecond [s], as a clock shows it that adds up short times."""
+    """Return a time rounded to whole nanoseconds [s], which equals that of a clock that adds up short times."""
     return in_seconds(nanoseconds(seconds))

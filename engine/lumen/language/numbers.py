@@ -1,4 +1,4 @@
-"""Numbers as JSON, YAML and the expressions define them; a bool is not a number, although Python counts it as one."""
+"""Test for numbers as JSON, YAML and the expressions define them: a bool is not one, although it is an int in Python."""
 
 from math import isfinite
 from typing import TypeGuard

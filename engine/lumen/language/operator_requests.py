@@ -1,4 +1,4 @@
-"""The requests of operators to a running exhibition: a row for each, for its senders and for the part that answers.
+"""The requests of operators to a running exhibition: a row for each, used by senders and by the part that answers.
 
 A request is a message on `lumen.{robot}.operator.request` with a `reply_to`: docs/deployment.md describes the answers.
 """
@@ -14,7 +14,7 @@ MAX_NAME = 100
 
 @dataclass(frozen=True, slots=True)
 class OperatorRequest:
-    """One request: `{"ask": ask, "by": PERSON, …fields}`; calling it makes its body."""
+    """A kind of request, with the body `{"ask": ask, "by": PERSON, …fields}`. Calling it with fields returns a body."""
 
     ask: str
     fields: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
@@ -40,7 +40,7 @@ class OperatorRequest:
 
     @property
     def shown(self) -> str:
-        """The request as that list shows it."""
+        """The request as the list of valid requests shows it."""
         return f'`{{"ask": "{self.ask}"{self.example and f", {self.example}"}}}`'
 
 

@@ -1,4 +1,4 @@
-"""Names of people: whether two texts name the same person, and a text without the name."""
+"""Compare names of people, find them in texts and remove them."""
 
 import re
 import unicodedata
@@ -19,10 +19,10 @@ def name_key(name: str) -> str:
 
 
 class PersonName:
-    """A person's name, found in texts as whole words, in any spelling.
+    """A person's name, which is found in texts as whole words, whatever its case and its form in Unicode.
 
-    `others` are keys of names that contain it, as `ana maria` contains `ana`: a text that has those does not name this
-    person. An empty name is in no text.
+    `others` are the keys of other names. If one of them contains this name, as `ana maria` contains `ana`, its
+    occurrences do not count. An empty name is in no text.
     """
 
     def __init__(self, name: str, others: Iterable[str] = ()) -> None:
@@ -36,7 +36,7 @@ class PersonName:
         return bool(self._spans(name_key(text)))
 
     def taken_from(self, text: str) -> str:
-        """Return the text without the name; it is in NFC if the name was removed."""
+        """Return the text without the name; if it contained the name, in NFC and without spaces at its ends."""
         while self.is_named_in(text):
             shorter = self._cut(unicodedata.normalize("NFC", text))
             if shorter == text:
@@ -93,7 +93,7 @@ def _folded(text: str) -> str:
 
 
 def _accent(sign: str) -> bool:
-    """Return whether a combining mark distinguishes names: all do except those that only choose a glyph."""
+    """Return True if a character is a combining mark other than a variation selector, which only selects a glyph."""
     return unicodedata.category(sign) == "Mn" and not "\ufe00" <= sign <= "\ufe0f"
 
 

@@ -48,7 +48,7 @@ class Project:
     body: Body
     hall: str
     behavior: str
-    """The one of `behaviors` that runs."""
+    """The name of the behaviour that runs, one of `behaviors`."""
     behaviors: Mapping[str, MachineDefinition]
     knowledge: Mapping[str, Passage] = field(default_factory=dict)
     questions: Mapping[str, QuestionSet] = field(default_factory=dict)
@@ -75,7 +75,7 @@ class Project:
     """The time that saved files wait for running commands [s]."""
     modules: Mapping[str, ModuleSettings] = field(default_factory=dict)
     aliases: bool | None = None
-    """Whether routes have their aliases: None as long as no other robot is seen on the bus."""
+    """True if routes have their aliases, False if not; None if they have them until another robot is on the bus."""
     hash: str = ""
     """The hash of all files' contents."""
     robots: Mapping[str, RobotSpec] = field(default_factory=dict)
@@ -103,7 +103,7 @@ class Project:
 
     @property
     def served(self) -> tuple[str, ...]:
-        """The robot, and those that one of the modules serves besides (`robots` of `eyes`)."""
+        """The names of this robot and of the others that its module `eyes` also serves (by the option `robots`)."""
         others = self.modules[EYES].options.get("robots", ()) if EYES in self.modules else ()
         return tuple(dict.fromkeys((self.robot, *others)))
 
@@ -116,16 +116,16 @@ class Project:
         return replace(self, sections={**self.sections, key: settings})
 
     def at(self, root: str) -> "Project":
-        """Return the project in another folder, which its verbs are performed from, too."""
+        """Return the project with another folder as its root, which the programs of its verbs are started from."""
         verbs = {name: row._replace(root=root) for name, row in self.verbs.items()}
         return replace(self, root=root, verbs=verbs)
 
     def key_of(self, route: str) -> str:
-        """Return the routing key of a route, which the project need not list if it is one of Lumen's own."""
+        """Return this robot's routing key of a route of the project or of Lumen. Raises KeyError for an unknown one."""
         row = self.routes.get(route)
         return row.key_for(self.robot) if row else default_key(route, self.robot)
 
     def place(self, file: str, where: NodePath) -> Place:
-        """Return the place of a node in a file, by the `where` of a state, transition, action or scene."""
+        """Return the place of the node at a path, such as the `where` of a state; the file's first line if unknown."""
         document = self.documents.get(file)
         return document.place(where) if document else Place(file)

@@ -1,4 +1,4 @@
-"""Conditions that must hold whatever happens: `properties` of a behaviour and of a story."""
+"""Conditions that must hold in every run: `properties` of a behaviour or of a story."""
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
@@ -17,9 +17,9 @@ class Property:
     eventually: Expression | None = None
     """The condition that must hold at some time before the deadline; None for `always`."""
     whenever: Expression | None = None
-    """The condition from whose beginning the time counts, each time; None for the beginning of the run."""
+    """The condition that starts the time whenever it becomes true; None to count from the beginning of the run."""
     within: float = 0.0
-    """The deadline [s]."""
+    """The time until the deadline [s]."""
     where: NodePath = field(default=(), compare=False)
 
 

@@ -12,10 +12,9 @@ MAX_BUDGET = 30.0
 
 @dataclass(frozen=True, slots=True)
 class ReplayCheck:
-    """`warn` reports what would differ, `refuse` also rejects such files; empty checks nothing.
-
-    The newest visits are played first, for at most `budget` [s].
-    """
+    """The settings of the check, which plays recorded visits with the saved files, the newest first."""
 
     mode: CheckMode = ""
+    """`warn` reports visits that would differ, `refuse` also rejects the files; empty for no check."""
     budget: float = DEFAULT_BUDGET
+    """The maximum time of a check [s]."""

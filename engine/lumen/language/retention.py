@@ -8,10 +8,12 @@ SHORTEST_RING, LONGEST_RING = 10.0, 7200.0
 
 @dataclass(frozen=True, slots=True)
 class JournalRetention:
-    """Entries older than `keep` days are deleted, then the oldest above `size` MB; 0 keeps no journal."""
+    """The limits of the journal, beyond which the oldest entries are deleted; if one is 0, no journal is kept."""
 
     keep: float = 30.0
+    """The maximum age of an entry [days]."""
     size: float = 2000.0
+    """The maximum size of the journal [MB]."""
 
     @property
     def wanted(self) -> bool:
@@ -21,7 +23,7 @@ class JournalRetention:
 
 @dataclass(frozen=True, slots=True)
 class RecordingSettings:
-    """The recordings that are made of the bus without a request."""
+    """The settings of automatic recordings of the bus."""
 
     ring: float = 0.0
     """The length of the past that is always available [s]; 0 for none."""
@@ -30,4 +32,4 @@ class RecordingSettings:
     size: float = 5000.0
     """The maximum size of all kept recordings [MB]."""
     camera: bool = True
-    """Whether recordings have images."""
+    """True if recordings contain the camera's images."""

@@ -1,4 +1,4 @@
-"""A robot's body as far as it is known without a simulation: joints, limits, parts, postures, camera."""
+"""A robot's body without its simulation: joints, limits, parts, postures, camera."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -10,9 +10,10 @@ from lumen.language.roles import Roles
 
 @dataclass(frozen=True, slots=True)
 class Joint:
-    """A joint: limits [rad], greatest speed [rad/s], greatest torque [N m].
+    """A joint: its limits [rad], and its maximum speed [rad/s] and torque (`effort`, [N m]).
 
-    A hand counts 0 closed to 1 open. A joint that slides has lengths [m], [m/s] and a force [N].
+    The position of a hand is its opening, from 0 (closed) to 1 (open). A sliding joint has lengths [m], a speed [m/s]
+    and a force [N].
     """
 
     name: str
@@ -33,9 +34,9 @@ class CoupledLimit:
 
 @dataclass(frozen=True, slots=True)
 class Camera:
-    """A pinhole camera on the head: size [px], angles of view [rad], place in its frame [m], pitch down [rad].
+    """A pinhole camera on the head: size [px], angles of view [rad], position in the head [m], pitch down [rad].
 
-    `neck` is where the axes of yaw and pitch meet, in the torso's frame [m]: NAO's unless the body names another.
+    `neck` is the point where the axes of yaw and pitch meet, in the torso's frame [m]; the default is NAO's.
     """
 
     width: int
@@ -90,12 +91,15 @@ class Body:
     """The joints that move by a length [m]."""
     sonar: Ultrasound | None = None
     passages: tuple[MotionDefinition, ...] = ()
-    """Motions from one posture (`start`) to another (`end`) between which a direct movement would fall."""
+    """Motions between two postures (`start` and `end`), for robots that would fall on the direct way."""
     links: Mapping[str, LinkInertia] = field(default_factory=dict)
     """The links that differ from the MJCF."""
     roles: Roles = field(default_factory=Roles)
     """The parts of the body by function."""
     gait: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
-    """For each pace, the parameters that do not follow from the legs, in SI units."""
+    """For each pace, the parameters of walking that can't be derived from the legs, in SI units."""
     give: float = 0.0
-    """The error at which the servos of joints without one in the MJCF give their full torque [rad]; 0 adds none."""
+    """The position error at which a servo gives its full torque [rad], for joints without an actuator in the MJCF.
+
+    0 adds no servos.
+    """

@@ -1,7 +1,7 @@
-"""The functions of a body's parts: `roles` of `models/NAME.yaml`, which skills, motions and life use instead of names.
+"""The functions of a body's parts, `roles` of `models/NAME.yaml`. Skills, motions and life use them instead of names.
 
-Directions are those of NAO for every body: a yaw grows to the left, a pitch down or forward, a roll to the left. A roll
-of the head grows to the right, about the axis that points ahead.
+Directions are those of NAO for every body: a positive yaw is to the left, a positive pitch down or forward, a positive
+roll to the left. Only the head's positive roll is to the right, about the axis that points ahead.
 """
 
 from collections.abc import Mapping
@@ -14,7 +14,7 @@ LEFT, RIGHT = SIDES = ("left", "right")
 HEAD_ROLES = ("yaw", "pitch")
 """The joints by which a head looks somewhere."""
 HEAD_MOVES = ("roll", "x", "y", "z")
-"""Other joints of a head: `roll` tilts it, and on x (ahead), y (left) and z (up) it slides by a length."""
+"""Other joints of a head: `roll` tilts it; `x` (ahead), `y` (left) and `z` (up) are sliding joints."""
 ARM_ROLES = ("shoulder-pitch", "shoulder-roll", "elbow-yaw", "elbow-roll", "wrist-yaw")
 LEG_ROLES = ("hip-yaw", "hip-roll", "hip-pitch", "knee", "ankle-pitch", "ankle-roll")
 """The joints of a leg from the hip to the sole; walking on feet needs all six."""
@@ -37,7 +37,7 @@ FIXED = "fixed"
 
 @dataclass(frozen=True, slots=True)
 class JointRole:
-    """The joint that has a role; `reversed` if its angle grows in the direction opposite to the role's."""
+    """The joint that has a role; `reversed` is true if its positive direction is the opposite of the role's."""
 
     joint: str
     reversed: bool = False
@@ -72,10 +72,12 @@ class Base:
 
 @dataclass(frozen=True, slots=True)
 class EyeRoles:
-    """The camera of the MJCF that the robot sees with, and the link that carries its face; or empty."""
+    """The parts of the MJCF that are the robot's eyes and face."""
 
     camera: str = ""
+    """The name of the camera that the robot sees with; empty for none."""
     face: str = ""
+    """The name of the link that carries the face; empty for none."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,7 +99,7 @@ class Roles:
     """The parts of a body by function. All may be absent; the body can't do what needs an absent part."""
 
     torso: str = ""
-    """A link of the MJCF (x ahead, y left, z up)."""
+    """The name of the torso's link in the MJCF (x ahead, y left, z up); empty for none."""
     head: Mapping[str, JointRole] = field(default_factory=dict)
     body: Mapping[str, JointRole] = field(default_factory=dict)
     eyes: EyeRoles = EyeRoles()
@@ -129,12 +131,12 @@ class Roles:
         return next((path for path, role in self.paths.items() if role.joint == joint), "")
 
     def head_joints(self, yaw: float, pitch: float) -> dict[str, float]:
-        """Return the angles of the joints that turn the head [rad], as many as this body has."""
+        """Return the angle [rad] of each joint that turns the head, for this yaw and pitch; only of joints it has."""
         wanted = ((self.joint(HEAD_YAW), yaw), (self.joint(HEAD_PITCH), pitch))
         return {role.joint: role.sign * angle for role, angle in wanted if role}
 
     def head_angles(self, angles: Mapping[str, float]) -> tuple[float, float]:
-        """Return yaw and pitch of the head [rad] at these joint angles; 0 for a joint that the body lacks."""
+        """Return the yaw and pitch of the head [rad] at these joint angles; 0 for a joint that the body lacks."""
         yaw, pitch = (self.joint(path) for path in (HEAD_YAW, HEAD_PITCH))
         return (
             yaw.sign * angles.get(yaw.joint, 0.0) if yaw else 0.0,
@@ -142,6 +144,6 @@ class Roles:
         )
 
     def name(self, path: str) -> str:
-        """Return the name of that joint; empty if this body lacks it."""
+        """Return the name of the joint of a role such as `head.yaw`; empty if this body lacks it."""
         role = self.paths.get(path)
         return role.joint if role else ""

@@ -1,4 +1,4 @@
-"""The messages that the exhibition uses, and how each is carried."""
+"""Routes: the messages that an exhibition sends and receives, and how each is transported."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -20,12 +20,12 @@ _MEANINGS: Mapping[str, str] = {
 
 
 def route_meanings() -> Mapping[str, str]:
-    """Return the routes whose names have a meaning for Lumen, and what each is for; all others are the exhibition's."""
+    """Return the purpose of each route whose name has a meaning for Lumen; other names are free for the exhibition."""
     return {**{sense: str(row.meaning) for sense, row in table("senses").items()}, **_MEANINGS}
 
 
 JSON_TYPE, JPEG_TYPE, FLOATS_TYPE = "application/json", "image/jpeg", "application/vnd.lumen.float32"
-"""The forms in which a body may be sent to a broker: JSON, an image as it is, joints as 32-bit numbers."""
+"""The forms in which a body may be sent to a broker: JSON, the bytes of a JPEG, joint angles as 32-bit floats."""
 
 
 class Direction(StrEnum):
@@ -38,8 +38,8 @@ class Direction(StrEnum):
 class Carried(StrEnum):
     """The kind of a message, which decides its fate if the connection is slow, full or cut.
 
-    Of `telemetry` the newest message wins. A `command` is performed soon or not at all. A `stop` is a command that
-    waits for nothing else. Of a `journal` no message is lost.
+    Only the newest message of `telemetry` counts. A `command` is performed soon or not at all. A `stop` is a command
+    that never waits behind others. No message of a `journal` is lost.
     """
 
     TELEMETRY = "telemetry"
@@ -51,17 +51,17 @@ class Carried(StrEnum):
 DEFAULT_COMMAND_TTL = 5.0
 """The lifetime of a command if its route does not set one [s]."""
 LONGEST_COMMAND_TTL = 10.0
-"""The longest sensible lifetime of a command [s]: later, the people around the robot have moved."""
+"""The longest sensible lifetime of a command [s]: after that, people may have moved into the robot's way."""
 
 
 MAX_RATE = 2_000.0
-"""The maximum rate of a route without a limit [1/s]; a fault in a loop sends thousands."""
+"""The default maximum rate of an outgoing route [1/s], which only a faulty loop exceeds."""
 USUAL_RATE = 50.0
-"""The maximum rate of an incoming route that sets none [1/s]: that of the exhibition's ticks."""
+"""The default maximum rate of an incoming route [1/s], the rate of the exhibition's ticks."""
 
 
 STOP_RATE = 200.0
-"""The maximum rate of stops if their route sets none [1/s]; none may be lost among others."""
+"""The default maximum rate of incoming stops [1/s], high enough that no stop is lost among others."""
 
 
 class Size(NamedTuple):
@@ -119,7 +119,7 @@ class Route:
     alias: str = ""
     """A second key while one robot is on the bus: messages are sent under both and received under either."""
     of: str = ""
-    """The sense that it carries in addition to that sense's own route, at another period or size or in another form."""
+    """The sense that the route carries besides the sense's own route, with another period, size or form; else empty."""
     content_type: str = JSON_TYPE
     """The form of a body on a broker."""
     where: NodePath = field(default=(), compare=False)
@@ -132,7 +132,7 @@ class Route:
 
     @property
     def sense(self) -> str:
-        """The sense that the route carries, if it carries one."""
+        """The name of the sense that the route carries, if it carries one; else the route's own name."""
         return self.of or self.name
 
     @property

@@ -1,4 +1,4 @@
-"""The routing keys that Lumen itself uses; every other key is free for an exhibition's own messages."""
+"""The routing keys that Lumen itself uses; all others are free for an exhibition's own messages."""
 
 from collections.abc import Mapping
 
@@ -15,13 +15,13 @@ DEFAULT_KEYS: Mapping[str, str] = {
 """The routes that Lumen and its modules use, with their default keys."""
 
 DEFAULT_ALIASES: Mapping[str, str] = {name: route.alias for name, route in BUILT_IN_ROUTES.items() if route.alias}
-"""The keys of 2015, which allow only one robot, for routes that lumen.yaml does not list (`Route.alias`)."""
+"""The keys of 2015 by route, which allow only one robot; for routes that lumen.yaml does not list (`Route.alias`)."""
 
 SHARED_ROUTES = frozenset((
     "heard", "gender", "wav_stream", "text_stream", "text_to_speech", "face", "recognised", "face_tracking", "human",
     "visual_command", "social_perception", "social_expression", "fact", "forgotten", "journal",
 ))  # fmt: skip
-"""Routes between modules and behaviours: any route may send under their keys, whatever its name."""
+"""Routes between modules and behaviours, whose keys a project's route of any name may use."""
 
 CONFIG_COMMAND, CONFIG_STATUS = "lumen.{robot}.config.command", "lumen.{robot}.config.status"
 """Keys without a route: orders to reload, and their results."""
@@ -53,5 +53,5 @@ def key_of_house(key: str, house: str) -> str:
 
 
 def default_key(route: str, robot: str) -> str:
-    """Return the default key of one of Lumen's routes for that robot."""
+    """Return the default key of one of Lumen's routes for that robot. Raises KeyError for any other route."""
     return DEFAULT_KEYS[route].replace("{robot}", robot)

@@ -1,4 +1,4 @@
-"""Scales of words: terms named by words of one scale should have numbers in the same order."""
+"""Scales of words, such as cold, warm, hot: fuzzy terms with such names should be in the same order."""
 
 SCALES: tuple[tuple[tuple[str, ...], ...], ...] = (
     (("negative", "neg", "minus"), ("zero", "neutral", "center", "centre", "null"), ("positive", "pos", "plus")),
@@ -16,7 +16,10 @@ SCALES: tuple[tuple[tuple[str, ...], ...], ...] = (
 
 
 def ranks(names: tuple[str, ...]) -> dict[str, int]:
-    """Return the names that one scale orders, with their ranks in it; empty if it orders fewer than two."""
+    """Return the ranks of those names that are on one scale, the scale with most of them.
+
+    The result is empty if no scale has two of the names with different ranks.
+    """
     best: dict[str, int] = {}
     for scale in SCALES:
         words = {word: rank for rank, step in enumerate(scale) for word in step}

@@ -6,7 +6,7 @@ from typing import TypeVar
 T = TypeVar("T")
 
 Sections = Mapping[str, object]
-"""The settings by their keys in lumen.yaml, without those that say no more than their defaults."""
+"""The settings of features by their keys in lumen.yaml, without sections that equal their defaults."""
 
 
 def section_of(sections: Sections, kind: type[T]) -> T:

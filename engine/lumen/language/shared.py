@@ -12,11 +12,14 @@ SHARED_EVENT = "shared.changed"
 
 @dataclass(frozen=True, slots=True)
 class SharedKey:
-    """A key of `shared:`: the robot that alone assigns it, the JSON type of its values, and the first of them."""
+    """A key of `shared:`."""
 
     owner: str
+    """The robot that alone can assign it."""
     type: str
+    """The JSON type of its values."""
     initial: Any
+    """Its value before the robot assigns one."""
 
 
 @dataclass(frozen=True, slots=True)

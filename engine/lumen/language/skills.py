@@ -1,4 +1,4 @@
-"""The roles that a body needs to perform a command, for lint, runtime and robots."""
+"""Find the roles and parts that a body lacks for a command, for lint, the runtime and robots."""
 
 from typing import NamedTuple
 
@@ -12,14 +12,14 @@ _ADD = "add {} under `roles` of its body"
 
 
 class Lack(NamedTuple):
-    """The message that a body lacks parts for a command, `NAO has neither legs nor wheels`, and the roles to add."""
+    """A message about missing parts of a body, such as `NAO has neither legs nor wheels`, and how to add them."""
 
     message: str
     hint: str
 
 
 def lack_of(command: object, body: Body) -> Lack | None:
-    """Return what that body lacks to perform a command at all; None if it can."""
+    """Return the parts that a body lacks for a command; None if it can perform the command, even in part."""
     roles = body.roles
     match command:
         case Walk() | Move() | GoTo() if not roles.base.row.moves:
@@ -43,7 +43,10 @@ def _needed(command: Do) -> tuple[str, ...]:
 
 
 def tracking_lack(controller: ControllerDefinition, body: Body) -> Lack | None:
-    """Return what that body lacks for `track`, if a controller moves joints by role and the body has none of them."""
+    """Return the roles that a body lacks for `track`, if it has none of the joints that the controller moves by role.
+
+    Otherwise return None.
+    """
     wanted = [binding.joint for binding in controller.output_bindings]
     if not wanted or any(name in body.joints for name in wanted) or not all(name in JOINT_PATHS for name in wanted):
         return None
@@ -52,5 +55,5 @@ def tracking_lack(controller: ControllerDefinition, body: Body) -> Lack | None:
 
 
 def tracked(command: object) -> str:
-    """Return the controller that a command switches on; empty for any other."""
+    """Return the name of the controller that a command switches on; empty for any other command."""
     return command.controller if isinstance(command, Track) and command.on else ""

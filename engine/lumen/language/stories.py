@@ -12,7 +12,7 @@ from lumen.language.properties import Property
 
 @dataclass(frozen=True, slots=True)
 class Visitor:
-    """A person in the hall: their place in the robot's frame at its start, and their height [m]."""
+    """A person in the hall: the position in the robot's frame at its start (x ahead, y left), and the height [m]."""
 
     x: float = 1.5
     y: float = 0.0
@@ -49,7 +49,7 @@ class TouchSensor:
 
 @dataclass(frozen=True, slots=True)
 class Happen:
-    """`event: NAME` or `event: {name, data}`: an event without a source."""
+    """`event: NAME` or `event: {name, data}`: an event for the behaviour, without a message that causes it."""
 
     name: str
     data: Any = None
@@ -95,7 +95,7 @@ class AnswerQuestion:
 
 @dataclass(frozen=True, slots=True)
 class SetSkills:
-    """`skills: {NAME: RESULT}`: a skill returns that from now on; if it is a text, it `fails` or `hangs`."""
+    """`skills: {NAME: RESULT}`: the result of a skill from now on, or `fails` or `hangs`."""
 
     ends: Mapping[str, Mapping[str, Any] | str]
 
@@ -116,13 +116,14 @@ class AwaitTime:
 
 @dataclass(frozen=True, slots=True)
 class Expect:
-    """`expect:`: all of this holds, or comes to hold `within` this time, else the story fails.
+    """`expect:`: the story fails unless all of these conditions become true `within` this time [s].
 
-    Texts, motions, verbs and messages count since the last `expect` that held.
+    Only texts, motions, verbs and messages since the last fulfilled `expect` count. A field that is None sets no
+    condition.
     """
 
     states: tuple[str, ...] = ()
-    """States that are active together."""
+    """States that must be active at the same time."""
     said: str | None = None
     """A part of a text that was spoken."""
     said_exactly: str | None = None
@@ -135,13 +136,13 @@ class Expect:
     published: str | None = None
     """A route on which a message was sent."""
     body: Any = None
-    """The least content of that message's body; None for any."""
+    """Data that the message's body must contain; None for any body."""
     context: Mapping[str, Any] = field(default_factory=dict)
-    """The values of context keys."""
+    """The values that context keys must have."""
     place: str | None = None
     """The robot's place, by its odometry."""
     within: float = 30.0
-    """[s]"""
+    """The time limit [s]."""
 
 
 VisitorAction = (
@@ -183,9 +184,9 @@ class Story:
     """The time of day at its start."""
     context: Mapping[str, Any] = field(default_factory=dict)
     robot: Mapping[str, str | float] = field(default_factory=dict)
-    """`fails`, `hangs` or a duration [s], by verb."""
+    """How the robot performs a verb, by verb: `fails`, `hangs` or a duration [s]."""
     results: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
-    """The result of a feature's verb, by verb."""
+    """The results of added verbs, by verb."""
     never: tuple[str, ...] = ()
     """States that must never be entered."""
     properties: tuple[Property, ...] = ()

@@ -1,7 +1,7 @@
-"""The lines of a text, counted in the same way wherever files are read, checked, shown or changed.
+"""Split texts into lines in the same way wherever files are read, checked, shown or changed.
 
 A line ends with LF, CR, or CR and LF (YAML 1.2, section 5.4, and the language server protocol). YAML 1.1 and
-`str.splitlines` also end one at U+0085, U+2028, U+2029 and more. Editors don't, so these are characters here.
+`str.splitlines` also end lines at U+0085, U+2028, U+2029 and more; here these are ordinary characters, as in editors.
 """
 
 import re
@@ -39,7 +39,7 @@ class LineIndex:
         return offset - self._starts[self.line(offset) - 1] + 1
 
     def offset(self, line: int, column: int) -> int:
-        """Return the offset of a line and column, both from 1; the end of the text if they lie beyond it."""
+        """Return the offset of a line and column, both from 1; the length of the text if they are beyond its end."""
         if line > len(self._starts):
             return self._length
         return min(self._starts[line - 1] + column - 1, self._length)

@@ -1,9 +1,9 @@
 """The verbs of the YAML that are commands: a row for each, with its fields and how it reads in transcripts and diffs.
 
-All generic code uses these rows: `project/actions.py` reads a command with them, `project/formats/behavior_data.py`
-writes it, the language server completes its names, and the transcript and the diff of bundles describe it. The other
-properties that a robot needs of each are in `robot/command_table.py`. `tests/seams/test_verbs.py` checks both tables
-and the schemas.
+All generic code uses these rows: `project/actions.py` reads commands with them, `project/formats/behavior_data.py`
+writes them, the language server completes names in them, and the transcript and the diff of bundles describe them. The
+properties that robots need are in `robot/command_table.py`. `tests/seams/test_verbs.py` checks both tables and the
+schemas.
 """
 
 from collections.abc import Callable, Iterator, Mapping
@@ -64,13 +64,12 @@ class VerbField:
     """A field of a command, under the name that it has in the YAML and in the dataclass."""
 
     name: str
-    """The name."""
     quantity: Quantity = Quantity.PLAIN
     """The kind of value, which decides its unit."""
     names: str = ""
     """The kind of thing that its value names: `motion`, `posture`, `controller`, `language` or `place`; else empty."""
     others: bool = False
-    """Whether its value is the map of all keys that are no other field's name."""
+    """True if its value is the map of all keys that no other field has."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,18 +85,18 @@ class Verb(Generic[C]):
     """The command's class."""
     fields: tuple[VerbField, ...]
     transcript: Callable[[C], str]
-    """Describes what the robot does: `plays dance`."""
+    """A function that describes the robot's action, for a transcript: `plays dance`."""
     change: Callable[[C], str]
-    """Describes what a behaviour does from now on: “`greet` now … on entering”."""
+    """A function that describes the action for a diff of bundles, in “`greet` now … on entering”."""
     pair: bool = False
-    """Whether it is written as the first field's value, followed by the second's: `track: {head: false}`."""
+    """True if the data are a map from the first field's value to the second's: `track: {head: false}`."""
     mapped: bool = False
-    """Whether it is written as a map although it has one field: `walk: {to: organ}`."""
+    """True if the data are a map even though there is only one field: `walk: {to: organ}`."""
     instant: bool = False
-    """Whether it ends at once; no robot performs it."""
+    """True if the command ends at once, because the runtime performs it and not the robot."""
 
     def arguments(self, data: Any) -> Iterator[tuple[VerbField, tuple[str, ...], Any]]:
-        """Yield each field in the data of the YAML, its path below the verb, and its value."""
+        """Yield each field that the verb's YAML data contain, with its path below the verb and its value."""
         if not self.fields:
             return
         if not isinstance(data, Mapping):
@@ -115,7 +114,7 @@ class Verb(Generic[C]):
                     yield field, (field.name,), data[field.name]
 
     def data(self, command: C, written: Callable[[Quantity, Any], Any]) -> Any:
-        """Return the data after the verb in the YAML for this command; `written` converts a field's value."""
+        """Return the verb's YAML data for this command; `written` converts the value of a field to the YAML's form."""
         values = {field.name: written(field.quantity, getattr(command, field.name)) for field in self.fields}
         if len(values) < 2 and not self.mapped:
             given = next(iter(values.values()), True)
@@ -215,20 +214,20 @@ _LANGUAGE = Verb(
 VERBS: tuple[Verb[Any], ...] = (
     _PLAY, _POSTURE, _GO_TO, _MOVE, _WALK, _LOOK, _LEDS, _VOLUME, _SOUND, _TRACK, _STOP, _REST, _WAKE, _LANGUAGE,
 )  # fmt: skip
-"""Of rows that share a name, the last one is used if no field decides."""
+"""The rows of all verbs. Of rows that share a name, the fields in the data select one, else the last one is used."""
 
 COMPUTED: Mapping[type[ComputedAction], str] = {
     SayText: "say", PublishBody: "publish", Assign: "assign", Raise: "raise", Send: "send", CancelSend: "cancel",
     Wait: "wait", LogText: "log", If: "if", Parallel: "parallel",
     AskQuestion: "ask",
 }  # fmt: skip
-"""The names of the other verbs, which the statechart itself evaluates; `mypy` finds the code that handles each."""
+"""The names of the other verbs, which the statechart itself evaluates; a `match` over their classes handles each."""
 
 _BY_COMMAND: Mapping[type, Verb[Any]] = {verb.command: verb for verb in VERBS}
 
 
 def verb_of(command: VerbCommand) -> Verb[Any]:
-    """Return the row of a command; for a command of a feature, one for its verb."""
+    """Return the row of a command; for an added verb, a new row with its name."""
     return _added(command.skill) if isinstance(command, Do) else _BY_COMMAND[type(command)]
 
 
@@ -250,12 +249,12 @@ def _listed(arguments: Mapping[str, Any]) -> str:
 
 
 def is_built_in(name: str) -> bool:
-    """Return True if the YAML has a verb of that name that comes with Lumen."""
+    """Return True for the name of a verb that comes with Lumen, and for `then` and `else`, which no verb may have."""
     return name in ("then", "else", *COMPUTED.values()) or any(verb.name == name for verb in VERBS)
 
 
 def names_in(action: Action, kind: str) -> Iterator[str]:
-    """Yield the names of that kind of thing (`motion`, `posture`, …) in the fields of an action."""
+    """Yield the names of a kind of thing, such as `motion` or `posture`, in the fields of an action."""
     verb = _BY_COMMAND.get(type(action))
     yield from (getattr(action, field.name) for field in verb.fields if field.names == kind) if verb else ()
 

@@ -1,4 +1,4 @@
-"""The version of the YAML's words, a number: `lumen:` in lumen.yaml names the one that its files use."""
+"""The version of the YAML's vocabulary, a number: `lumen:` in lumen.yaml names the version of a project's files."""
 
 VOCABULARY = 1
 """The version that this Lumen reads. It grows only if a valid file would get another meaning, or none."""

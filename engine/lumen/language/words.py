@@ -1,4 +1,4 @@
-"""A words file as values: texts that staff can edit without seeing states."""
+"""A words file as values: texts that the staff can edit without reading statecharts."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
