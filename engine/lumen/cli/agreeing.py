@@ -1,4 +1,4 @@
-"""Confirmation by the person at this terminal, before a robot moves."""
+"""Ask the person at this terminal for confirmation before a robot moves."""
 
 import sys
 

@@ -1,4 +1,4 @@
-"""The answers to `lumen why` and `lumen why-not`, as lines of text for people."""
+"""Print the answers to `lumen why` and `lumen why-not` as lines of text."""
 
 import json
 from collections.abc import Iterator, Mapping
@@ -16,21 +16,21 @@ BECAUSE = {
     "inactive": "its state was not active",
 }
 LEADS = {"activity": "by", "event": "for", "timer": "for", "message": "from", "person": "from", "file": "from"}
-"""The word before a link of the chain, by the kind of the link; other kinds get `because`."""
+"""The word before a link of the chain of causes, by the link's kind; other kinds get `because`."""
 WIDTH = 100
 INDENT = " " * 10
 MAX_INACTIVE = 3
-"""The number of ways from inactive states that are shown; the rest are only counted."""
+"""The maximum number of reasons about inactive states that are shown; the rest are only counted."""
 
 
 MAX_NEEDS = 5
 
 
 def why_lines(answer: Mapping[str, Any]) -> Iterator[str]:
-    """Yield the lines of an answer to `why`: what happened, the links of the chain, then what it depends on.
+    """Yield the lines of an answer to `why`: the event, the chain of its causes, then the earlier steps it depends on.
 
-    A time is printed only if it differs from the time of the link before. Each link is followed by the values that its
-    guard read, and by its place in the files.
+    A time is shown only if it differs from that of the link before. After each link come the values that its guard
+    read, and its place in the files.
     """
     at = ""
     for number, link in enumerate(answer["chain"]):
@@ -52,7 +52,7 @@ def why_lines(answer: Mapping[str, Any]) -> Iterator[str]:
 def why_not_lines(answer: Mapping[str, Any]) -> Iterator[str]:
     """Yield the lines of an answer to `why-not`: each reason, its guard's values, and the change that would help.
 
-    The reasons come nearest first, as they are in the answer; at most MAX_INACTIVE of them are about inactive states.
+    The reasons have the order of the answer, the nearest first; at most MAX_INACTIVE of them are about inactive states.
     """
     yield f"{_time(answer['at'])}  not {answer['what']}"
     if not answer["reasons"]:

@@ -1,4 +1,4 @@
-"""Send a command to the robot of a running exhibition, on the same route as any module does."""
+"""Send a command to the robot of a running exhibition, on the route that modules use too."""
 
 import argparse
 import sys
@@ -14,7 +14,7 @@ COMMAND_TIMEOUT = 30.0
 
 
 def command(options: argparse.Namespace, body: Any, done: str) -> int:
-    """Send a command and wait for the answer: print `done` and return 0, or print why it was refused and return 1.
+    """Send a command and wait for the answer; print `done` and return 0, or print the refusal and return 1.
 
     Raises BusError if no answer arrives within COMMAND_TIMEOUT [s].
     """

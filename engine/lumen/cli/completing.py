@@ -1,4 +1,4 @@
-"""Completion of a command line, derived from the parser that will read it."""
+"""Complete a command line, by the parser that will read it."""
 
 import argparse
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -15,11 +15,11 @@ class Candidate(NamedTuple):
 
 
 Names = Callable[[str], Sequence[str]]
-"""The names that a project has for a placeholder such as `STORY`; empty for free text and for files."""
+"""A function that returns a project's names for a placeholder such as `STORY`; none for free text and for files."""
 
 
 def candidates(parser: Suggesting, words: Sequence[str], names: Names) -> list[Candidate]:
-    """Return the completions of the last of these words, which may be empty; none for files and for unknown verbs.
+    """Return the completions of the last of these words, which may be empty; none for a file or an unknown verb.
 
     `words` are the words after `lumen`. The verb among them must be configured in `parser`.
     """

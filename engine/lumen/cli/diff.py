@@ -1,4 +1,4 @@
-"""`lumen diff`: list what a reload from one version of a project to another would change, and its outcome."""
+"""`lumen diff`: list the changes from one version of a project to another, and the outcome of a reload."""
 
 import argparse
 import json

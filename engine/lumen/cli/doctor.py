@@ -1,4 +1,4 @@
-"""`lumen doctor`: check whether an exhibition's bus can be used, and what is missing on it."""
+"""`lumen doctor`: check whether an exhibition's bus can be used, and whether all its parts are on the bus."""
 
 import argparse
 import json
@@ -159,9 +159,9 @@ def _permissions(probe: Probe, project: Project) -> Iterator[Finding]:
 
 
 def _life(bus: Bus, project: Project) -> Iterator[Finding]:
-    """Listen to the senses for LISTENING [s]; yield which of them arrive, and how far the robot's clock is off.
+    """Listen to the senses for LISTENING [s]; report those that do not arrive, and the difference of the clocks.
 
-    A sense is a route with a period of at most half of that time.
+    Only routes with a period of at most half of that time count as senses.
     """
     routes, heard, skews = by_key(project), set[str](), list[float]()
     complete = threading.Event()
@@ -193,7 +193,7 @@ def _life(bus: Bus, project: Project) -> Iterator[Finding]:
 
 
 def _obeying(probe: Probe, attendance: RobotAttendance, project: Project) -> Iterator[Finding]:
-    """Yield whether the robot that receives the commands is alive; nothing if no process receives them."""
+    """Report whether the robot is alive if a process receives its commands; yield nothing if no process does."""
     route = project.routes.get(COMMAND_ROUTE)
     if route is None or not probe.served(project.key_of(COMMAND_ROUTE), route).readers:
         return
@@ -206,7 +206,7 @@ def _obeying(probe: Probe, attendance: RobotAttendance, project: Project) -> Ite
 
 
 def _modules(attendance: RobotAttendance, project: Project) -> Iterator[Finding]:
-    """Yield for each of the project's own modules whether it shows signs of life, else whether its program exists."""
+    """Report for each of the project's own modules whether it shows signs of life, else whether its program exists."""
     own = own_modules(project.modules)
     lacking = attendance.lacking(own) if own else set[str]()
     for name, module in own.items():
@@ -221,7 +221,7 @@ def _modules(attendance: RobotAttendance, project: Project) -> Iterator[Finding]
 
 
 def _skills(attendance: RobotAttendance, project: Project) -> Iterator[Finding]:
-    """Yield for each of the project's skills whether its program is where the robot runs, or its module is alive."""
+    """Report for each of the project's skills whether the robot's process has its program, or its module is alive."""
     modules = {name: module for name, row in project.verbs.items() if (module := _module_of(row))}
     lacking = attendance.lacking(set(modules.values())) if modules else set[str]()
     for name, module in modules.items():
@@ -256,7 +256,7 @@ def _found(program: str, project: Project) -> bool:
 
 
 def _served(probe: Probe, project: Project) -> Iterator[Finding]:
-    """Yield which routes that must arrive have a reader.
+    """Report which routes with messages that must arrive have a reader.
 
     A missing motion module is only a note: the brain replaces it.
     """
@@ -277,7 +277,7 @@ def _served(probe: Probe, project: Project) -> Iterator[Finding]:
 
 
 def _skew(body: Any) -> float | None:
-    """Return how far this machine's clock is ahead of a body's `datePublished` [s]; None if it has no valid date."""
+    """Return the time from a body's `datePublished` to this machine's clock [s]; None if it has no valid date."""
     date = body.get("datePublished") if isinstance(body, dict) else None
     if not isinstance(date, str):
         return None

@@ -28,10 +28,10 @@ class RunExtra(Protocol):
     def wishes(
         self, options: argparse.Namespace, project: "Project", story: "Story | None", period: float | None
     ) -> Mapping[str, Any]:
-        """Return options of the plan of one robot that runs for `period` [s], or without a limit if that is None.
+        """Return options, by name, for the plan of one robot that runs for `period` [s]; None for no limit.
 
-        The core itself reads two names: `track`, an `AudioTrack` that receives all the robot's sound, and `video`, the
-        path of the film that is written. Raises UsageError.
+        The core itself reads two of them: `track`, an `AudioTrack` that receives all the robot's sound, and `video`,
+        the path of the film that is written. Raises UsageError if the options can't be fulfilled.
         """
         ...
 
@@ -48,7 +48,7 @@ class LintExtra(Protocol):
         ...
 
     def more(self, found: Sequence["Findings"], wanted: "Wanted", options: argparse.Namespace) -> list["Findings"]:
-        """Return the findings of each project, with those that the options add."""
+        """Return `found`, the findings of each project, with those that the options add."""
         ...
 
 

@@ -1,4 +1,4 @@
-"""`lumen lint --fix` and `--diff`: repairs that need no decision."""
+"""`lumen lint --fix` and `--diff`: make or show repairs that need no decision."""
 
 import difflib
 import sys
@@ -24,7 +24,7 @@ def repair(what: LintTarget, wanted: Wanted) -> tuple[Mapping[str, bytes], Mappi
 
 
 def diff(root: Path, before: Mapping[str, bytes], after: Mapping[str, bytes], on: bool) -> Iterator[str]:
-    """Yield the lines of a unified diff between the files before and after a repair."""
+    """Yield the lines of a unified diff between the files before and after a repair; `on` adds colours."""
     for file in (file for file in after if after[file] != before[file]):
         name = Findings((), {}, str(root)).name(file)
         old, new = (lines_of(files[file].decode("utf-8", "replace").rstrip("\r\n")) for files in (before, after))

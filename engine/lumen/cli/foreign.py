@@ -1,4 +1,4 @@
-"""Files of other tools, for the subcommands that read them."""
+"""Read files of other tools, for the subcommands that convert them."""
 
 from pathlib import Path
 

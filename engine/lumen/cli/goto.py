@@ -56,7 +56,7 @@ def _request(reached: Reached, state: str, **more: str) -> dict[str, Any]:
 
 
 def _sure(state: str, way: dict[str, Any]) -> bool:
-    """Print which states are left and entered, and return whether the person at the terminal confirms."""
+    """Print the states that are left and entered; return True if the person at the terminal confirms."""
     left = f"leaves {', '.join(way['exited'])} and " if way["exited"] else ""
     print(f"This {left}enters {', '.join(way['entered'])}; guards are not checked.")
     return agrees(f"Go to {state}?", "goto asks for confirmation, but this is not a terminal: add --yes")

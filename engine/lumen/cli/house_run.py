@@ -119,7 +119,7 @@ class HouseRun:
         return plan_of(self._options, one, self._parts, self._url, setup, clock, transcript, greeting=typed)
 
     def _failure(self) -> str:
-        """Return why the story failed; empty if it did not, or if there is no story."""
+        """Return the reason why the story failed; empty if it did not, or if there is no story."""
         visitor = self.made[self._first].get(VisitorPart)
         return visitor.player.failure if visitor and visitor.player else ""
 
@@ -131,7 +131,7 @@ class HouseRun:
 
 
 def check_house(options: argparse.Namespace, parts: Sequence[str]) -> None:
-    """Raise UsageError for options that work with only one robot, or that don't fit several processes."""
+    """Raise UsageError for options that work with only one robot, or not with several processes."""
     own = (option.destination for option in robot_options() if not option.several)
     for name in ("model", *own, "record", "sound"):
         if vars(options)[name]:

@@ -39,7 +39,7 @@ from lumen.upkeep.garbage import gc_paused
 BEGINNINGS = {b"<": ".scxml", b"{": ".json"}
 """The ending to assume for a file without a known one, by its first byte."""
 READ, WRITTEN = 20, 50
-"""The share of the time [%] that a large chart takes to be read, and from there to be written."""
+"""The progress of a large chart's import [%] when it has been read, and the share that writing adds."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -181,7 +181,7 @@ def _reader(path: Path, content: bytes) -> tuple[str, FileReader]:
 
 
 def _refusal(file: Path, text: str, fault: Diagnostic, said: list[Diagnostic]) -> str:
-    """Return why nothing is written: the loader's error in the result, and the omission that may have caused it."""
+    """Return the message that nothing is written: the error in the result, and the omission that may be its cause."""
     line = lines_of(text)[fault.place.line - 1].strip() if fault.place.line else ""
     near = f" at `{line[:80]}`" if line else ""
     lost = next((d for d in said if d.severity is Severity.ERROR), None)
@@ -191,7 +191,7 @@ def _refusal(file: Path, text: str, fault: Diagnostic, said: list[Diagnostic]) -
 
 
 def result_faults(file: str, text: str, kind: str, body: Body | None = None) -> list[Diagnostic]:
-    """Return what the loader reports about the result: errors, and for a motion whether it exceeds the speed limits."""
+    """Return the findings of loading the result, and for a motion of `body` one about joints that would be too fast."""
     document, found = parse(file, text.encode())
     if document is None:
         return found

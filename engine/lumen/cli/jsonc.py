@@ -1,4 +1,4 @@
-"""JSON with comments, such as VS Code's settings: add members and leave the rest of the text unchanged."""
+"""Add members to JSON with comments, such as VS Code's settings, and leave the rest of the text unchanged."""
 
 import json
 import re
@@ -10,7 +10,7 @@ _BLANKS = " \t\r\n"
 
 
 class _Item(NamedTuple):
-    """The span of a value, and the key of a member of a map; the key is empty for an entry of a list."""
+    """The span of a value in the text, and its key in a map; the key is empty for an entry of a list."""
 
     key: str
     begin: int
@@ -23,10 +23,10 @@ def plain(text: str) -> str:
 
 
 def added(text: str, more: dict[str, Any]) -> str:
-    """Return the text of a map with these members added.
+    """Return the text of a map with these members added; an empty text counts as an empty map.
 
-    A value that is a map is merged, a list gets the entries that it lacks, and any other value is replaced. Raises
-    ValueError if the text is not JSON with comments, or its top level is not a map.
+    A map is merged into an existing map, a list gets the entries that it lacks, and any other value is replaced. Raises
+    ValueError if the text is not JSON with comments, or if its top level is not a map.
     """
     data = json.loads(plain(text)) if plain(text).strip() else None
     if data is None:

@@ -1,4 +1,4 @@
-"""JUnit XML for continuous integration: suites of test cases, each of which passed or failed."""
+"""Write JUnit XML for continuous integration: suites of test cases, each of which passed or failed."""
 
 import re
 import xml.etree.ElementTree as ET
@@ -17,7 +17,7 @@ class JunitFailure(NamedTuple):
 
 
 class JunitCase(NamedTuple):
-    """A test; `attributes` are its `time` [s], `file` and `line` if they are known."""
+    """A test. It passed if `failure` is None. `attributes` are its `time` [s], `file` and `line`, if they are known."""
 
     name: str
     classname: str

@@ -46,7 +46,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Run `list`, `add` or `check`; return 0, or 1 if `check` finds anything missing."""
+    """Run `list`, `add` or `check`; return 0, or 1 if `check` finds missing texts.
+
+    Raises ProjectError if the project's files have errors.
+    """
     root = own_project(options.project)
     files = read_files(root)
     _, diagnostics = check_files(root, files)

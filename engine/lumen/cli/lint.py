@@ -1,4 +1,4 @@
-"""`lumen lint`: print what is wrong in a project, and where."""
+"""`lumen lint`: print the faults in the files of projects, with their places."""
 
 import argparse
 from collections.abc import Mapping, Sequence
@@ -62,7 +62,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _judge(against: str | None, wanted: Wanted, *, kept: bool) -> FindingsOf:
-    """Return the function that lints a project, including what a reload from `against` would refuse, move or lose.
+    """Return the function that lints a project and, if `against` is given, reports the problems of a reload from it.
 
     If `kept`, results of earlier runs are reused for files that have not changed; --watch keeps them in memory instead.
     """

@@ -25,7 +25,7 @@ atexit.register(gc.freeze)  # the process frees what is left; a last garbage col
 
 
 def ready() -> float:
-    """Return how long ago this process began [s]."""
+    """Return the time since this process began [s]."""
     return time.monotonic() - STARTED
 
 
@@ -39,9 +39,9 @@ def subcommands() -> dict[str, Subcommand]:
 
 
 def command_line(wanted: Collection[str]) -> Suggesting:
-    """Return the parser of the command line. Only the wanted verbs get their options: each is imported for that.
+    """Return the parser of the command line, in which only the wanted verbs have options: these verbs are imported.
 
-    The others share a parser without options, because making one for each takes as long as all the rest. Raises
+    The others share a parser without options, because a parser for each would take as long as everything else. Raises
     LumenError if a wanted verb belongs to another installed package and can't be imported.
     """
     bare = Intermixed(prog="lumen", formatter_class=Help)
@@ -87,9 +87,10 @@ def _configure(command: Suggesting, verb: str, row: Subcommand) -> None:
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run `lumen` with these arguments, and return its exit code.
+    """Run `lumen` with these arguments, by default those of the process, and return the exit code.
 
-    It is 0 if all is well, 1 for findings or a failed story, 2 if the command could not run.
+    It is 0 if all is well, 1 for findings or a failed story, 2 if the command could not run, 130 after Ctrl-C. Unknown
+    options and `--help` raise SystemExit.
     """
     open_streams()
     arguments = sys.argv[1:] if argv is None else list(argv)
@@ -141,7 +142,7 @@ def _run(options: argparse.Namespace) -> int:
 
 
 def _exit_code(verb: str, returned: object) -> int:
-    """Return what a subcommand returned. Raises LumenError with the name of its package if that is not an exit code."""
+    """Return the result of a subcommand. Raises LumenError, with the name of its package, if it is no exit code."""
     if isinstance(returned, int):
         return returned
     from lumen.project.broken_features import faulty
@@ -150,7 +151,7 @@ def _exit_code(verb: str, returned: object) -> int:
 
 
 def _reason(error: BaseException) -> str:
-    """Return why this machine can't run the subcommand, and what to do; empty for any other error."""
+    """Return the reason, with advice, if a fault of this machine prevents the subcommand; empty for any other error."""
     if not isinstance(error, OSError):
         return ""
     if error.errno == errno.ENOSPC:
@@ -166,7 +167,7 @@ def _reason(error: BaseException) -> str:
 
 
 def _somewhere() -> bool:
-    """Return whether the working directory still exists: another process may have deleted it."""
+    """Return True if the working directory still exists: another process may have deleted it."""
     try:
         return bool(os.getcwd())
     except FileNotFoundError:

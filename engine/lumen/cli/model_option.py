@@ -1,4 +1,4 @@
-"""`--model NAME`: use another body than the one in lumen.yaml."""
+"""`--model NAME`: use a body other than the one in lumen.yaml."""
 
 import argparse
 from collections.abc import Iterable
@@ -18,9 +18,9 @@ def configure_model(parser: argparse.ArgumentParser) -> None:
 
 
 def use_model(name: str, roots: Iterable[Path]) -> None:
-    """Use that body from now on; an empty name changes nothing.
+    """Make this process, and those that it starts, use the body of that name; an empty name changes nothing.
 
-    Raises UsageError if one of the projects has no such body.
+    Raises UsageError if neither Lumen nor one of the projects in `roots` has such a body.
     """
     if not name:
         return

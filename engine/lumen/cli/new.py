@@ -107,5 +107,5 @@ def _add(options: argparse.Namespace, kind: str) -> int:
 
 
 def _kinds() -> tuple[str, ...]:
-    """Return what can be added to a project: the templates of Lumen, and those of features."""
+    """Return the kinds of files that can be added to a project: the templates of Lumen, and those of features."""
     return (*TEMPLATES, *table("new_files"))

@@ -26,7 +26,7 @@ GREETING = (
 
 
 class Performance:
-    """The terminal output of a whole exhibition that runs in one process."""
+    """Runs a whole exhibition of one robot in this process, and prints its introduction, transcript and summary."""
 
     def __init__(self, setup: Setup, project: Project, made: Sequence[Services]) -> None:
         self.transcript = _VisitorsTranscript(setup, project, made)
@@ -107,7 +107,7 @@ class _VisitorsTranscript(Transcript):
             self.distance = distance
 
     def _look_back(self) -> float | None:
-        """Return the distance of the face of a visitor who leaves from the centre of the image [px]."""
+        """Return the distance between the visitor's last seen face and the image's centre [px]; None without a face."""
         faces = self._made[0][RobotPart].faces
         if faces is None or faces.last is None or faces.camera is None:
             return None

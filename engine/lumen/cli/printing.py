@@ -1,4 +1,4 @@
-"""Findings on standard output, and the exit code that they lead to."""
+"""Print findings on standard output, and compute their exit code."""
 
 import sys
 from collections.abc import Sequence
@@ -15,9 +15,9 @@ def verdict(found: Sequence[Findings], *, strict: bool = False) -> int:
 
 
 def show(text: str) -> None:
-    """Print a text. If the reader has gone (`lumen lint | head`), return anyway, so that the verdict still counts.
+    """Print a text. If a pipe's reader has gone (`lumen lint | head`), return as usual: the exit code still counts.
 
-    Raises UsageError if it can't be printed for another reason.
+    Raises UsageError if printing fails for another reason.
     """
     try:
         print(text.encode("utf-8", "replace").decode(), flush=True)

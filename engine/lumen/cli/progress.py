@@ -1,4 +1,4 @@
-"""A progress bar with the estimated time that is left: on a terminal only, and after two seconds."""
+"""A progress bar with the estimated time left; it appears only on a terminal, and after two seconds."""
 
 import sys
 import threading
@@ -56,9 +56,9 @@ def progress_line(state: ProgressState, now: float, *, at_most: bool = False) ->
 
 @contextmanager
 def progress(*, at_most: bool = False, clock: Callable[[], float] = time.monotonic) -> Iterator[ProgressListener]:
-    """Yield a function to report progress to; erase the line at the end.
+    """Show a progress bar on standard error until the block ends; yield the function that receives the progress.
 
-    `at_most`: the whole amount is an upper bound.
+    `at_most` is true if the whole amount is only an upper bound.
     """
     if not sys.stderr.isatty():
         yield lambda done, whole, name: None

@@ -57,7 +57,8 @@ PLACEHOLDERS: Mapping[str, Callable[[Path], Iterable[str]]] = {
     "ROUTE": _routes,
     "OLD": lambda root: ("live", "HEAD"),
 }
-"""Functions from a project's folder to names, by the placeholder of an argument in `--help`, else by its destination.
+"""The functions that find names in a project's folder, by the placeholder of an argument in `--help`.
 
-All other arguments are files or free text.
+For an argument without a placeholder the key is its destination in capitals. All other arguments are files or free
+text.
 """

@@ -1,4 +1,4 @@
-"""The project that a command shows, chosen by the same rule for every command."""
+"""Choose the project that a command shows, by the same rule for every command."""
 
 import sys
 from pathlib import Path
@@ -8,9 +8,10 @@ from lumen.project.running_project import is_substituted, running_project
 
 
 def shown_project(path: str | None) -> Path:
-    """Return the folder of a project; if none is here or above, the copy that `lumen run` plays, else the shipped one.
+    """Return the folder of a project: `path`, or by default the working directory or its nearest parent with one.
 
-    In the latter two cases print a line on standard error. Raises UsageError if there is no such folder.
+    Without one, return the copy of the shipped project that `lumen run` plays, or else the shipped project itself, and
+    print that on standard error. Raises UsageError if `path` is not a folder.
     """
     root = running_project(path)
     if is_substituted(path):

@@ -1,4 +1,4 @@
-"""The common part of `lumen why` and `lumen why-not`: who answers, and how the answer is printed."""
+"""The common part of `lumen why` and `lumen why-not`: ask the exhibition, else the journal, and print the answer."""
 
 import argparse
 import sys
@@ -16,10 +16,10 @@ from lumen.run.recalling import answer_from_journal
 
 
 def moment(text: str, now: datetime) -> str:
-    """Return the moment that a time on the command line means, as ISO 8601 in UTC.
+    """Return the moment of a time that was typed, as ISO 8601 in UTC.
 
-    A time of day is in the last 24 hours before `now`, the local time: `14:03` is the end of that minute, `14:03:20`
-    the end of that second. A time with a date is that moment itself. Raises UsageError for anything else.
+    A time of day is in the 24 hours before `now`, the local time: `14:03` is the end of that minute, and `14:03:20` the
+    end of that second. A time with a date is exactly that moment. Raises UsageError for any other text.
     """
     try:
         if "-" in text:
@@ -35,7 +35,7 @@ def moment(text: str, now: datetime) -> str:
 
 
 def configure_question(parser: argparse.ArgumentParser) -> None:
-    """Add the options of a question about the past."""
+    """Add the options of a question about the past: the exhibition, the time and the output format."""
     configure_reach(parser)
     parser.add_argument("--at", metavar="T", help="the time to ask about, such as 14:03 or 14:03:20 (default: now)")
     configure_format(parser)

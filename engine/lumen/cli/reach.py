@@ -1,4 +1,4 @@
-"""Options that choose the exhibition and the robot that a subcommand is about."""
+"""Options that choose the exhibition and the robot for a subcommand."""
 
 import argparse
 from collections.abc import Callable
@@ -32,7 +32,7 @@ def for_each_robot(options: argparse.Namespace, do: Callable[[argparse.Namespace
 
 
 def names_meant(options: argparse.Namespace) -> list[str]:
-    """Return the robot of --robot-name, else all in `robots:`; one empty name if lumen.yaml has a single `robot:`."""
+    """Return the name in --robot-name, else all names in `robots:`; one empty name if lumen.yaml has no `robots:`."""
     return [options.robot_name] if options.robot_name else robots_meant(options.project) or [""]
 
 

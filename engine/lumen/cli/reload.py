@@ -29,9 +29,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Send the request and print each answer until the final one, even while the files wait to be activated.
+    """Send the request, and print each answer until the final one, which may wait for the files to be activated.
 
-    Return 0 if the files are active or staged, 1 if they were refused.
+    Return 0 if the request was fulfilled, 1 if it was refused or no final answer came.
     """
     body = {"command": options.command or "reload", "now": options.now}
     reached = reach(options)
@@ -46,7 +46,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _node(answer: Any, format: str) -> None:
-    """Print a verdict: as a JSON object, or its lines for people."""
+    """Print an answer: as a JSON object, or as its lines for people."""
     if format == "json" or not isinstance(answer, dict):
         shown = {key: value for key, value in answer.items() if key != "lines"} if isinstance(answer, dict) else answer
         print(json.dumps(shown, ensure_ascii=False), flush=True)
@@ -56,5 +56,5 @@ def _node(answer: Any, format: str) -> None:
 
 
 def _clean(text: str) -> str:
-    """Return a text from elsewhere without characters that could control the terminal."""
+    """Return a text of another program without characters that could control the terminal."""
     return "".join(sign if sign.isprintable() else "\N{REPLACEMENT CHARACTER}" for sign in text)

@@ -1,4 +1,4 @@
-"""`lumen replay`: run what happened again, with the files that ran then or with others, and compare."""
+"""`lumen replay`: run recorded visits again, with the files that ran then or with others, and compare."""
 
 import argparse
 from collections.abc import Callable, Iterable
@@ -26,7 +26,7 @@ from lumen.run.versions import version
 from lumen.run.workers.workers import workers_of
 
 SMALL = 1_000_000
-"""A journal of fewer bytes is replayed in this process: worker processes would take longer to start."""
+"""The size below which a journal is replayed in this process [bytes]: workers would take longer to start."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:

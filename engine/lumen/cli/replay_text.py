@@ -7,11 +7,14 @@ from lumen.language.iso_time import local_time
 from lumen.run.replaying.replay_report import ReplayReport
 
 SHOWN = 10
-"""The number of differences that are listed."""
+"""The maximum number of differences that are listed."""
 
 
 def replay_lines(report: ReplayReport, *, other: bool) -> Iterator[str]:
-    """Yield the lines of a report: the counts, the first differences, and what could not be compared."""
+    """Yield the lines of a report: the counts, the first differences, and the entries that could not be compared.
+
+    `other` is true if the replay used other files than the recorded visits.
+    """
     counts = [f"{report.same} the same"]
     for how in ("differs", "says something else", "ends elsewhere"):
         count = sum(row.how == how and row.visit > 0 for row in report.differ)

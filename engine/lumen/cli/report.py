@@ -1,4 +1,4 @@
-"""Diagnostics on a terminal, in the form of `lumen lint`."""
+"""Print diagnostics on a terminal, one line each."""
 
 import sys
 from collections.abc import Iterable

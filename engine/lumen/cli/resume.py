@@ -23,7 +23,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Ask for confirmation and send the request to each robot; return 0, or 1 if it was refused or declined."""
+    """Ask for confirmation and send the request to each robot; return 0, or 1 if one was refused or not confirmed."""
     if options.format == "json" and not options.yes:
         raise UsageError("--format json can't ask for confirmation: add --yes")
     return for_each_robot(options, _resume)
@@ -52,7 +52,7 @@ def _here(since: object) -> str:
 
 
 def _sure(stopped: Any, robot: str) -> bool:
-    """Print who stopped the robot and why confirmation is needed; return whether the person confirms."""
+    """Print who stopped the robot and why confirmation is needed; return True if the person confirms."""
     by, since = (stopped.get(key) for key in ("stopped_by", "since")) if isinstance(stopped, dict) else ("", "")
     print(f"{by} stopped {robot} at {_here(since)}." if by else f"{robot[0].upper()}{robot[1:]} is not stopped.")
     otherwise = "resume asks for confirmation, but this is not a terminal: add --yes if there is room around the robot"

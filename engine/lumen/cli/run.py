@@ -47,10 +47,7 @@ from lumen.upkeep.heap import give_back
 
 PROCESS_GREETING = "You are the visitor: type what you say, or /help. Ctrl-D walks away, Ctrl-C ends.\n"
 PRIORITY = -10
-"""The niceness of an exhibition in real time.
-
-To set it takes root, or a permission such as `LimitNICE=-10` in systemd.
-"""
+"""The niceness of an exhibition in real time; it needs root or a permission, such as systemd's `LimitNICE=-10`."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -231,7 +228,7 @@ def _processes(
 
 
 def _summed_up(node: Node, lived: float, *, judged: bool) -> RunVerdict:
-    """Print how the run of these parts went, and return its verdict; `judged`: whether a story judged the behaviour."""
+    """Print how the run of these parts went, and return its verdict; `judged` is true if a story was played."""
     of_parts, troubles = node.summary(), troubles_of(node, judged=judged)
     with_trouble = "Ended with trouble" if troubles else "Ended"
     print(f"\n{'The story failed' if node.failed else with_trouble}: {clock_time(lived)}.")
@@ -295,9 +292,9 @@ def _check_processes(options: argparse.Namespace, story: Story | None, parts: Se
 def _heard(
     options: argparse.Namespace, one: RobotRun, setup: Setup | None, track: AudioTrack | None = None
 ) -> Iterator[None]:
-    """Connect a simulated robot to its voice, if the options ask for one, and to sounds, here and in the film.
+    """Connect a simulated robot to a voice, if the options choose one, and to a loudspeaker, until the block ends.
 
-    Raises UsageError or ModuleError.
+    Their sound also goes to `track`, the sound of a film. Raises UsageError or ModuleError if the voice can't be used.
     """
     with ExitStack() as stack:
         if setup and (options.voice != "none" or options.sound):

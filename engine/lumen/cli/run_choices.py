@@ -14,7 +14,10 @@ from lumen.run.setup import Setup, robot_options, set_up
 
 
 def chosen_story(project: Project, name: str | None) -> Story | None:
-    """Return the story of this name, None if the name is empty. Raises UsageError if no story or several match."""
+    """Return the story that a name or pattern matches; None if it is None.
+
+    Raises UsageError if no story or several stories match.
+    """
     if name is None:
         return None
     found = list(stories_of(project, name))
@@ -39,7 +42,7 @@ def period_of(text: str | None) -> float | None:
 
 
 def language_of(project: Project, language: str | None) -> str:
-    """Return the language that was given, empty if none was. Raises UsageError if the project does not have it."""
+    """Return the language, or an empty text for None. Raises UsageError if the project does not have the language."""
     if language is not None and language not in project.languages:
         hint = did_you_mean(language, project.languages, "it has")
         raise UsageError(f"the project has no language `{language}`: {hint}")
@@ -47,18 +50,21 @@ def language_of(project: Project, language: str | None) -> str:
 
 
 def robot_of(options: argparse.Namespace, project: Project, story: Story | None) -> Setup:
-    """Return the robot that the options choose. Raises UsageError if they contradict each other."""
+    """Return the set-up of the robot that the options choose. Raises UsageError if they contradict each other."""
     return set_up(options.robot, project, options.speed, story, robot_wishes(options))
 
 
 def robot_wishes(options: argparse.Namespace) -> dict[str, str]:
-    """Return the options of robots that were given, by their names."""
+    """Return the values of the options of robots that were given on the command line, by option."""
     given = {option.name: vars(options)[option.destination] for option in robot_options()}
     return {name: value for name, value in given.items() if value}
 
 
 def wishes(options: argparse.Namespace, project: Project, story: Story | None, period: float | None) -> dict[str, Any]:
-    """Return the options of the plan of one robot that the extra options of features set. Raises UsageError."""
+    """Return the options of one robot's plan that follow from the features' options of `lumen run`.
+
+    Raises UsageError if they can't be fulfilled.
+    """
     found: dict[str, Any] = {}
     for extra in run_extras():
         found |= extra.wishes(options, project, story, period)

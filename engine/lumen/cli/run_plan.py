@@ -29,16 +29,16 @@ class RobotRun:
     directory: RunDirectory
     story: Story | None
     first: bool = True
-    """Whether the person at the terminal plays this robot's visitor, and this robot serves the console."""
+    """True if the person at the terminal plays this robot's visitor, and this robot serves the console."""
 
 
 def running(made: Sequence[Services], project: Project) -> Project:
-    """Return the bundle that the only exhibition in a list runs; `project` if the list is still empty."""
+    """Return the project that the exhibition in `made` runs now; `project` if the list is still empty."""
     return made[0].project if made else project
 
 
 def leave(made: Iterable[Services]) -> None:
-    """End these exhibitions so that the next run continues from there."""
+    """End these exhibitions and keep their state, so that the next run continues from there."""
     for one in made:
         one.node.interrupt(2, leave=True)
 
@@ -55,12 +55,12 @@ def heed_signals(made: Sequence[Services]) -> None:
 
 
 def bus_hint(options: argparse.Namespace) -> str:
-    """Return the hint for a bus that can't be reached, if only a remote robot needs it; else empty."""
+    """Return the end of a message about an unreachable bus: the hint to use the embedded one; empty with `--only`."""
     return "" if options.only else ", or use --bus memory://"
 
 
 def compose_or_hint(plan: Plan, hint: str) -> Services:
-    """Compose an exhibition; `hint` ends the message if its bus can't be reached. Raises what `compose` raises."""
+    """Compose an exhibition. Raises the same errors as `compose`; `hint` is added if the bus can't be reached."""
     try:
         return compose(plan)
     except BusUnreachableError as error:

@@ -1,4 +1,4 @@
-"""How a run went, in the form of `lumen run --format json`."""
+"""The verdict of a run, and its form in `lumen run --format json`."""
 
 from collections.abc import Sequence
 from typing import Any, NamedTuple
@@ -7,13 +7,13 @@ from lumen.run.node import Node
 
 WELL, FAILED, TROUBLED, EARLY, INTERRUPTED = "well", "failed", "troubled", "early", "interrupted"
 MAX_TROUBLES = 5
-"""The number of troubles that the summary of a run lists."""
+"""The maximum number of troubles that the summary of a run lists."""
 
 
 class RunVerdict(NamedTuple):
-    """How a run went.
+    """The verdict of a run.
 
-    A run with troubles (`troubles_of`) is `troubled`, and `failure` is the first of them, unless its story failed.
+    A run with troubles (see `troubles_of`) is `troubled` unless its story failed, and `failure` is the first trouble.
     """
 
     ended: str
@@ -36,7 +36,7 @@ class RunVerdict(NamedTuple):
 
     @staticmethod
     def listed(troubles: Sequence[str]) -> list[str]:
-        """Return the troubles as lines of a summary."""
+        """Return the troubles as lines of a summary: the first MAX_TROUBLES, and the number of the rest."""
         more = len(troubles) - MAX_TROUBLES
         return [*troubles[:MAX_TROUBLES], *([f"… and {more} more"] if more > 0 else [])]
 
@@ -56,8 +56,9 @@ class RunVerdict(NamedTuple):
 
 
 def troubles_of(node: Node, *, judged: bool) -> list[str]:
-    """Return the troubles of a process at its end, after it was closed.
+    """Return the troubles of a process after it was closed.
 
-    A story has judged the troubles of the behaviour, and fails for each unexpected one; the faults of packages remain.
+    If a story was played (`judged`), these are only the faults of installed packages, because the story itself fails if
+    the behaviour has an unexpected trouble.
     """
     return [*([] if judged else node.troubles), *node.faults]

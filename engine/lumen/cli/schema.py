@@ -87,7 +87,7 @@ def _list() -> str:
 
 
 def settings(root: Path) -> dict[str, Any]:
-    """Return VS Code's settings for a project: with its own schemas if it has any, else with those of this Lumen."""
+    """Return VS Code's settings that assign a schema to each file: the project's own copy, or else this Lumen's."""
     found: dict[str, dict[str, Any]] = {"yaml.schemas": {}}
     for kind, files in FILES.items():
         own = f"schemas/{kind}.schema.json"

@@ -26,7 +26,7 @@ EARS = {
     "speaks": "hear only interruptions: the robot speaks",
     "nobody": "hear only interruptions: no visitor looks at the robot from nearby or touches it",
 }
-"""The state of the ears, by the reason on the route `listening`."""
+"""Descriptions of the ears' state, by the reason in a message on the route `listening`."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -38,8 +38,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Print the status of each robot; return 0.
 
-    For a robot of a house that does not answer, print what is recorded of its last run. Raises BusError if no robot
-    answers.
+    For a robot that does not answer, print the record of its last run. Raises BusError if no robot answers.
     """
     root = shown_project(options.project)
     names = [options.robot_name] if options.robot_name else list(robots_of(root, None)) or [""]
@@ -85,7 +84,7 @@ def _print(found: Sequence[dict[str, Any]]) -> None:
 
 
 def _absent(status: dict[str, Any], now: datetime) -> Iterator[tuple[str, str]]:
-    """Yield the lines, a name and a text each, about a robot that does not answer."""
+    """Yield the lines about a robot that does not answer, each as a name and a text."""
     name = status["robot"] or "robot"
     if status["held"]:
         yield name, "does not answer, although its process on this machine is alive"
@@ -99,7 +98,7 @@ def _absent(status: dict[str, Any], now: datetime) -> Iterator[tuple[str, str]]:
 
 
 def _lines(status: dict[str, Any], now: datetime) -> Iterator[tuple[str, str]]:
-    """Yield the lines, a name and a text each, about a running robot; normal conditions are omitted."""
+    """Yield the lines about a running robot, each as a name and a text; normal conditions are omitted."""
     yield str(status["robot"]), f"in {', '.join(status['configuration'])}"
     yield "since", _ago(status["since"], now)
     yield "visitor", f"{status['visitor'] or 'no name known'}, spoken to in {status['language']}"

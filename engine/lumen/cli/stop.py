@@ -17,9 +17,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Stop every chosen robot, even if one can't be reached; return 0, or 1 if one refused.
+    """Stop every chosen robot; return 0, or 1 if one refused.
 
-    Then raise the first BusError.
+    Raises BusError if a robot could not be reached, but only after all others were stopped.
     """
     troubles, codes = list[BusError](), list[int]()
     for name in names_meant(options):
@@ -34,9 +34,9 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _stop(options: argparse.Namespace) -> int:
-    """Send the stop on its own route; the robot informs the behaviour. Raises BusUnreachableError if no robot answers.
+    """Send the stop on its own route; the robot informs the behaviour.
 
-    In that case the behaviour is stopped directly.
+    If no robot answers, stop the behaviour directly, and raise BusUnreachableError.
     """
     reached = reach(options)
     try:

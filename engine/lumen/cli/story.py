@@ -36,9 +36,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Write the story; return 0 if the robot does the same in it as in the visit, 1 if today's files make a difference.
+    """Write the story; return 0 if the robot does the same in it as in the visit, 1 if today's files change that.
 
-    Raises UsageError if the journal lacks the whole visit or its files, or if the output file already exists.
+    Raises UsageError if the journal lacks a part of the visit or its files, or if the output file already exists.
     """
     output: Path | None = options.output
     if output and output.exists() and not options.force:

@@ -1,4 +1,4 @@
-"""Standard output and error that are closed by the shell, full, or a pipe without a reader (`lumen run | head`)."""
+"""Handle standard streams that are closed, on a full disk, or a pipe without a reader (`lumen run | head`)."""
 
 import os
 import sys
@@ -34,7 +34,7 @@ def complain(text: str) -> None:
 
 
 def finish() -> str:
-    """Flush standard output. Return the reason if that fails; empty if it succeeds or the reader of a pipe has gone."""
+    """Flush standard output. Return the reason if that fails; empty on success, and if a pipe's reader has gone."""
     try:
         if not sys.stdout.closed:  # the language server closes it
             sys.stdout.flush()

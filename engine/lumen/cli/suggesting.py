@@ -1,4 +1,4 @@
-"""A parser that answers an unknown word of the command line with the nearest known one."""
+"""A command-line parser that suggests the nearest known word for an unknown one."""
 
 import argparse
 from collections.abc import Sequence

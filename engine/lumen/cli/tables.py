@@ -1,10 +1,10 @@
-"""Rows in columns."""
+"""Format rows of texts as a table."""
 
 from collections.abc import Sequence
 
 
 def table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
-    """Return the rows below their head, in columns as wide as their widest cell; numbers are aligned right."""
+    """Return a table: the head, then the rows. Columns are as wide as needed; those of numbers are right-aligned."""
     widths = [max(map(len, column)) for column in zip(head, *rows, strict=True)]
     right = [bool(rows) and all(_number(row[i]) for row in rows) for i in range(len(head))]
     lines = []

@@ -1,4 +1,4 @@
-"""Colours on a terminal, plain text elsewhere."""
+"""Colour text on a terminal; elsewhere leave it plain."""
 
 import os
 import sys
@@ -17,12 +17,15 @@ CODES = {
 
 
 def coloured(stream: TextIO | None = None) -> bool:
-    """Return whether to use colours on a stream: on a terminal, unless NO_COLOR is set or TERM is `dumb`."""
+    """Return True if a stream is a terminal that shows colours: NO_COLOR is not set, and TERM is not `dumb`.
+
+    The default is standard output.
+    """
     return (stream or sys.stdout).isatty() and "NO_COLOR" not in os.environ and os.environ.get("TERM") != "dumb"
 
 
 def paint(text: str, *styles: str, on: bool) -> str:
-    """Return the text in these styles if `on`, else unchanged."""
+    """Return the text in these styles, which are keys of CODES, if `on`; else unchanged."""
     if not on or not styles:
         return text
     return f"\x1b[{';'.join(CODES[s] for s in styles)}m{text}\x1b[0m"

@@ -65,7 +65,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Run the tests and print the verdict; return 0 if all is well, 1 if anything failed or was found."""
+    """Run the tests and print the verdict; return 1 if a test failed or the exploration found a fault, else 0."""
     folder, names = _words(options.words)
     _check(options)
     root = own_project(folder)
@@ -105,9 +105,9 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _words(words: list[str]) -> tuple[str | None, list[str]]:
-    """Return the project's folder, None for the default, and the names of stories.
+    """Return the project's folder, None for the default, and the names of stories and sayings.
 
-    The folder is the first word if it is a folder or lumen.yaml, else the project of the named files.
+    If the first word is a folder or a lumen.yaml, it is the project; else the project is that of the named files.
     """
     if words and (Path(words[0]).is_dir() or Path(words[0]).name == MAIN_FILE):
         return words[0], words[1:]
@@ -124,7 +124,10 @@ def _check(options: argparse.Namespace) -> None:
 
 
 def _chosen(project: Project, names: list[str]) -> tuple[list[Story], list[SayingSet]]:
-    """Return the stories and the files of sayings with these names, each once; all if there are no names."""
+    """Return the stories and the files of sayings with these names, each once; all if there are no names.
+
+    Raises UsageError if a name matches none, or if the project has no tests at all.
+    """
     if not (project.stories or project.sayings or any(each.examples for each in project.functions.values())):
         raise UsageError(
             "the project has no stories and no sayings: write a story in behaviors/stories/, as docs/stories.md shows"
@@ -150,7 +153,7 @@ def _examples(project: Project) -> tuple[JudgedExample, ...]:
 
 
 def _tried(project: Project) -> tuple[QuestionTrial, ...]:
-    """Return the results of the exhibition's test questions, one per language."""
+    """Return the results of the project's test questions, one for each language that has questions."""
     from lumen.retrieval.retriever import Retriever  # imports numpy
     from lumen.retrieval.trials import tried
 

@@ -35,7 +35,7 @@ TOPIC_VERBS = {
     "hz PATTERN": "measure how often messages arrive, and the longest gap",
     "bw PATTERN": "measure the size of messages, and the bytes per second",
 }
-"""A PATTERN is a key (`*` matches one word, `#` any number of them) or a route's name."""
+"""The verbs and their help. A PATTERN is a key (`*` matches one word, `#` any number of them) or a route's name."""
 LISTENING = 3.0
 SHOWN = 200
 LOOK = 0.5
@@ -44,7 +44,7 @@ BUILT_IN = "comes with Lumen"
 
 
 class Heard(NamedTuple):
-    """A message, and when it arrived [s]."""
+    """A message, and the time of its arrival on the monotonic clock [s]."""
 
     message: Message
     at: float
@@ -68,7 +68,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Do what the words require; return 0, or for `pub` 1 if no process listens or, with `--wait`, no answer came."""
+    """Run the given verb; return 0, or for `pub` 1 if no process listens or, with `--wait`, no answer came."""
     _check_words(options)
     project = _project(options)
     reached = reach(options)
@@ -117,7 +117,7 @@ def _list(options: argparse.Namespace, bus: Bus, project: Project | None) -> int
 
 
 def _origin(route: Route, project: Project) -> dict[str, Any]:
-    """Return the row of lumen.yaml, or that the route comes with Lumen and the places that use it."""
+    """Return `origin`, the place of the route's row or BUILT_IN, and `uses`, the places that use a built-in route."""
 
     def line(file: str, where: NodePath) -> str:
         return f"{file}:{project.place(file, where).line}"
@@ -198,7 +198,7 @@ def _within(answers: queue.SimpleQueue[Any], patience: float) -> list[Any]:
 
 
 def _listeners(key: str, project: Project | None) -> str:
-    """Return a hint: that the exhibition may not be running, or keys that it listens to, the nearest first."""
+    """Return a hint: to check that the exhibition is running, or the keys that it listens to, the nearest first."""
     routes = by_key(project) if project else {}
     heard = [each for each, route in routes.items() if route.direction is Direction.IN]
     return (
@@ -243,7 +243,7 @@ def _rows(options: argparse.Namespace, span: float, rows: list[dict[str, Any]], 
 
 
 def _measure(bus: Bus, pattern: str, span: float) -> Iterator[Heard]:
-    """Yield the messages that arrive in this time [s], and show the time left on a terminal."""
+    """Yield the messages that arrive within `span` [s], and show the progress on a terminal."""
     with progress() as tell:
         yield from _listen(bus, pattern, span, lambda waited: tell(waited, span, "s listened"))
 
@@ -251,7 +251,10 @@ def _measure(bus: Bus, pattern: str, span: float) -> Iterator[Heard]:
 def _listen(
     bus: Bus, pattern: str, span: float | None, tell: Callable[[float], None] = lambda waited: None
 ) -> Iterator[Heard]:
-    """Yield messages until the time is over or Ctrl-C is pressed. Raises BusClosedError if the exhibition ends."""
+    """Yield messages until `span` [s] is over or Ctrl-C is pressed; None for no limit.
+
+    `tell` is called with the time since the beginning [s]. Raises BusClosedError if the exhibition ends.
+    """
     came: queue.SimpleQueue[Heard] = queue.SimpleQueue()
     undo = bus.subscribe(pattern, lambda message: came.put(Heard(message, time.monotonic())))
     began = time.monotonic()
@@ -272,7 +275,7 @@ def _listen(
 
 
 def _project(options: argparse.Namespace) -> Project | None:
-    """Return the project, for its routes; None if its files have errors, because listening works without them."""
+    """Return the project, for its routes; None if its files have errors, since listening needs no project."""
     root = running_project(options.project)
     return check_files(root, read_files(root))[0]
 

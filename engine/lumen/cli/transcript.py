@@ -1,4 +1,4 @@
-"""A run as text on a terminal: when, who, what, and why."""
+"""Print a run on a terminal, a line for each event: its time, its actor, and its cause."""
 
 import shutil
 import sys
@@ -17,9 +17,9 @@ WHO = {"visitor": "yellow", "robot": "cyan", "state": "green", "reload": "magent
 
 
 class Transcript(Narrator):
-    """Prints one line for each event, with simulated time, and with the robot's name if `robot` is not empty.
+    """Prints one line for each event, with the exhibition's time, and with the robot's name if `robot` is not empty.
 
-    `unread` is called when the reader of the lines is gone.
+    `unread` is called if the reader of a pipe has gone.
     """
 
     explains = True
@@ -39,14 +39,14 @@ class Transcript(Narrator):
         self._colour = coloured(self._stream)
 
     def line(self, who: str, text: str) -> None:
-        """Print a line: the time, the actor (`who`), and the event."""
+        """Print a line with the time, the actor (`who`, a key of WHO or another word), and the event (`text`)."""
         minutes, tenths = divmod(int(self._now() * 10 + 1e-6), 600)
         time = paint(f"{minutes:2d}:{tenths / 10:04.1f}", "dim", on=self._colour)
         name = paint(f"{who:<8}", WHO.get(who, "dim"), on=self._colour)
         self.note(f"{time}  {self._robot}{name} {_wrapped(text, INDENT + len(self._robot))}")
 
     def note(self, text: str) -> None:
-        """Print a text as it is; discard it if the stream can't be written."""
+        """Print a text unchanged; discard it if the stream can't be written."""
         try:
             print(text, file=self._stream, flush=True)
         except OSError as error:  # the show continues if its log is full, and ends in order if the reader is gone
@@ -56,7 +56,10 @@ class Transcript(Narrator):
 
 
 def _wrapped(text: str, indent: int) -> str:
-    """Return the text wrapped beside time and name, without characters that could control the terminal."""
+    """Return the text wrapped to the terminal's width, with further lines indented by `indent` columns.
+
+    Characters that could control the terminal are replaced.
+    """
     text = "".join(sign if sign.isprintable() else "\N{REPLACEMENT CHARACTER}" for sign in text)
     width = max(shutil.get_terminal_size((120, 24)).columns - indent, 30)
     lines = textwrap.wrap(text, width, break_long_words=False, break_on_hyphens=False)

@@ -15,15 +15,15 @@ from lumen.run.services import Services
 from lumen.upkeep.threads import WatchedThread
 
 FAREWELL = 5.0
-"""The time that the exhibition continues after that person has left [s]."""
+"""The time that the exhibition continues after the visitor has left [s]."""
 MAX_LINE_CHARACTERS = 1_000
-"""The length of a line; a longer one is split."""
+"""The maximum length of a line; a longer one is split."""
 MAX_WAITING_LINES = 100
-"""The number of lines that wait to be said. When it is reached, reading stops until the visitor has spoken."""
+"""The maximum number of lines that wait to be spoken; reading stops until one has been."""
 
 
 def typed_visitor(services: Services) -> "TypedVisitorPart | None":
-    """Return the part for a typed visitor; None if there is no visitor, or a story plays it."""
+    """Return the part for a typed visitor; None if the exhibition has no visitor, or if a story plays the visitor."""
     visitor = services.get(VisitorPart)
     if visitor is None or services.plan.story:
         return None
@@ -31,10 +31,10 @@ def typed_visitor(services: Services) -> "TypedVisitorPart | None":
 
 
 class TypedVisitorPart(Part):
-    """Reads lines on its own thread and makes the visitor say or do them; at the end of input the visitor leaves.
+    """Reads lines on its own thread, and makes the visitor speak or perform them; the visitor leaves at end of input.
 
     If standard input is not a terminal and yields no line, the visitor stays and the exhibition continues. `greeting`
-    is printed first; `wake` is called, on any thread, with each line.
+    is printed first. `wake` is called for each line, on the reading thread.
     """
 
     patient = True
@@ -50,7 +50,7 @@ class TypedVisitorPart(Part):
 
     @property
     def over(self) -> bool:
-        """Whether the person who typed left more than FAREWELL seconds ago."""
+        """True if the visitor left more than FAREWELL seconds ago."""
         return self._gone is not None and self._now - self._gone > FAREWELL
 
     def begin(self, now: float) -> None:

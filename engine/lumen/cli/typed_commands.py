@@ -16,7 +16,7 @@ from lumen.run.story import StoryEnvironment
 from lumen.run.visitor import VisitorActor
 
 TAP = 0.5
-"""The time that a hand stays if none is typed [s]."""
+"""The duration of a touch if no time is typed [s]."""
 PLACES = {
     "head": "FrontTactil",
     "chest": "ChestButton",
@@ -25,7 +25,7 @@ PLACES = {
     "left bumper": "LeftBumper",
     "right bumper": "RightBumper",
 }
-"""The sensors of a NAO, by the everyday names of the places."""
+"""The sensors of a NAO, by everyday names of their places."""
 HELP = """\
 Type what the visitor says. A line that begins with / is a command:
   /touch head       touch the robot's head; also {places}
@@ -38,7 +38,7 @@ Type what the visitor says. A line that begins with / is a command:
 
 
 class TypedCommands:
-    """Runs the commands typed after a `/`; `tick` removes hands whose time is over."""
+    """Runs the commands typed after a `/`. `tick` ends touches whose time is over."""
 
     def __init__(self, visitor: VisitorActor, narrator: Narrator, exhibition: StoryEnvironment) -> None:
         self._visitor, self._narrator, self._exhibition = visitor, narrator, exhibition
@@ -54,7 +54,7 @@ class TypedCommands:
         }
 
     def do(self, line: str, now: float) -> None:
-        """Run a command at `now` [s], or print why it is not possible."""
+        """Run the command in a line at `now` [s]; if that is not possible, print the reason."""
         verb, *words = line.removeprefix("/").split() or [""]
         try:
             if verb not in self._verbs:
@@ -64,7 +64,7 @@ class TypedCommands:
             self._narrator.note(str(error))
 
     def tick(self, now: float) -> None:
-        """Remove the hands whose time is over at `now` [s]."""
+        """End the touches whose time is over at `now` [s]."""
         for sensor in [sensor for sensor, until in self._hands.items() if until <= now]:
             del self._hands[sensor]
             self._feel(sensor, pressed=False)

@@ -19,5 +19,5 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Print the causes; return 0, or 1 if it did not happen."""
+    """Print the causes; return 0, or 1 if the exhibition knows of no such event."""
     return put(options, WHY, why_lines)

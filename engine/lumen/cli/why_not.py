@@ -14,5 +14,5 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Print the reasons; return 0, or 1 if it did happen or nothing has that name."""
+    """Print the reasons; return 0, or 1 if the event did happen or the name is unknown."""
     return put(options, WHY_NOT, why_not_lines)

@@ -1,4 +1,4 @@
-"""`--workers`: how long work is divided among processes or machines."""
+"""`--workers`: divide long work among processes or machines."""
 
 import argparse
 

@@ -1,4 +1,4 @@
-"""Results that are written to a file if one is named, else printed."""
+"""Write results to a file if one is named, else print them."""
 
 from pathlib import Path
 
@@ -19,7 +19,10 @@ def write_result(text: str, output: Path | None, *, folders: bool = False) -> No
 
 
 def write_file(content: bytes, output: Path, *, folders: bool = False) -> None:
-    """Write a file atomically. If that fails, raise UsageError and leave an existing file unchanged."""
+    """Write a file atomically; `folders` creates missing folders.
+
+    Raises UsageError if that fails; an existing file is then unchanged.
+    """
     try:
         if folders:
             output.parent.mkdir(parents=True, exist_ok=True)

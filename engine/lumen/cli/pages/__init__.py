@@ -1,8 +1,8 @@
-"""The help page of each verb, apart from its options: `VERB.md` in this folder.
+"""The help page of each verb without its options, `VERB.md` in this folder.
 
-The indented lines at the top are examples: a command, two or more spaces, and its effect. The text after them is copied
-to `docs/commands/VERB.md`; its section `## JSON` describes the output of `--format json`. `scripts/command_pages.py`
-writes those pages, and `--help` shows the examples.
+The indented lines at the top are examples: a command, two or more spaces, and its effect. `--help` shows them.
+`scripts/command_pages.py` copies the text after them to `docs/commands/VERB.md`. A section `## JSON` in it describes
+the output of `--format json`.
 """
 
 import re

@@ -20,7 +20,7 @@ def finding_formats() -> tuple[str, ...]:
 
 
 def render(format: str, found: Sequence[Findings], *, coloured: bool = False) -> str:
-    """Return the findings in this format; empty if there are none and the format has no summary.
+    """Return the findings in this format, one of `finding_formats()`.
 
     Raises LumenError with the name of the package if the format belongs to another package and is faulty.
     """

@@ -1,4 +1,4 @@
-"""One line for each finding, in the form that editors and `grep` can read."""
+"""One line for each finding, in a form that editors can parse and `grep` can filter."""
 
 from collections.abc import Sequence
 

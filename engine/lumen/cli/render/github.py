@@ -1,6 +1,6 @@
-"""Workflow commands of GitHub Actions: annotations at the lines of a pull request.
+"""Workflow commands of GitHub Actions, which become annotations at the lines of a pull request.
 
-The commands and how they are escaped: GitHub's documentation of workflow commands, and `command.ts` of its toolkit.
+The commands and their escapes follow GitHub's documentation of workflow commands, and `command.ts` of its toolkit.
 """
 
 import os

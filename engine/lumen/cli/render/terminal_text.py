@@ -1,4 +1,4 @@
-"""Functions that the formats for people share."""
+"""Functions that several formats of findings share."""
 
 import unicodedata
 from collections.abc import Mapping, Sequence

@@ -1,4 +1,4 @@
-"""Findings with the line of the file that each is about, and the word underlined."""
+"""Findings for people, each with its line of the file and the word underlined."""
 
 from collections.abc import Iterator, Sequence
 
@@ -10,7 +10,7 @@ from lumen.project.files import Unreadable
 from lumen.run.linting.findings import Findings
 
 MAX_EXCERPT_WIDTH = 140
-"""The number of characters shown of a longer line: those around the word."""
+"""The maximum number of characters shown of a line; of a longer one, those around the word are shown."""
 
 
 def render(found: Sequence[Findings], *, coloured: bool = False) -> str:
@@ -54,7 +54,7 @@ class _Excerpts:
         self.texts: dict[str, list[str]] = {}
 
     def where(self, place: Place) -> str:
-        """Return the place in the form `file:line:column`, which terminals turn into a link."""
+        """Return the place in the form `file:line:column`, which many terminals make a link."""
         name = f"{clean(self.found.name(place.file))}:{place.line}:{place.column}"
         return paint(name, "bold", on=self.coloured)
 

@@ -12,7 +12,10 @@ from lumen.run.verdict import JudgedExample, JudgedSaying, Verdict
 
 
 def render(verdict: Verdict) -> str:
-    """Return `{"stories": […], "failed": N, "took": s}`, and `sayings`, `examples`, `questions` … if there are any."""
+    """Return `{"stories": […], "failed": N, "took": s}`, and `sayings`, `examples`, `questions`, … if there are any.
+
+    `failed` is the number of failed stories, and `took` is in [s].
+    """
     found: dict[str, Any] = {
         "stories": [_story(rehearsal) for rehearsal in verdict.rehearsals],
         "failed": verdict.failed,

@@ -25,7 +25,7 @@ def render(verdict: Verdict, *, coloured: bool = False) -> str:
 
 
 def story(rehearsal: Rehearsal, *, coloured: bool = False) -> str:
-    """Return a line with a story's result, length, name and title, and below it a failure and the last events."""
+    """Return a line with a story's result, length, name and title; after a failure also the cause and last events."""
     failed = rehearsal.failed
     sign = paint("FAILED", "bold", "red", on=coloured) if failed else paint("ok    ", "green", on=coloured)
     length = paint(f"{clock_time(rehearsal.time):>6}", "dim", on=coloured)
@@ -70,7 +70,7 @@ def _sayings(verdict: Verdict, coloured: bool) -> Iterator[str]:
 
 
 def misheard(one: JudgedSaying) -> str:
-    """Return in one line why a saying does not hold."""
+    """Return one line about a saying that another row, or none, matched."""
     return f"“{one.tried.saying.text}” in `{one.tried.saying.state}`: {one.tried.wrong}"
 
 
@@ -84,12 +84,12 @@ def _examples(verdict: Verdict, coloured: bool) -> Iterator[str]:
 
 
 def refuted(one: JudgedExample) -> str:
-    """Return in one line why an example does not hold."""
+    """Return one line about an example of a function that gave another value or an error."""
     return f"`{one.tried.call}`: {one.tried.wrong}"
 
 
 def _tried(trial: QuestionTrial, coloured: bool) -> Iterator[str]:
-    """Yield the share of a language's questions that are answered, and those that get the wrong passage's answer."""
+    """Yield the share of a language's questions that are answered, and the questions that get a wrong answer."""
     asked = paint(f"{count(trial.asked, 'question', 'questions')} in `{trial.language}`", "bold", on=coloured)
     wrong = f"{trial.rates.wrong:.0%} of all get a wrong answer"
     yield f"\n{asked}: {trial.rates.recall:.0%} of those with an answer get it, and {wrong};"
