@@ -1,7 +1,7 @@
-"""The features: what each adds to Lumen, as rows of its manifest.
+"""The features: each adds capabilities to Lumen, as rows of its manifest.
 
 manifest.py       the kinds of rows; a manifest imports nothing else of Lumen
-checking.py       what is wrong with the manifest of an installed package
+checking.py       the faults of the manifests of installed packages
 finding.py        all manifests, and their rows by kind and name
 """
 

@@ -1,4 +1,4 @@
-"""What is wrong with the manifest of an installed package: rows of another type, and values that no row can have."""
+"""Find faults in the manifest of an installed package: rows of a wrong type, and values that no row can have."""
 
 from collections.abc import Iterator, Mapping
 from typing import Any, get_args, get_origin, get_type_hints
@@ -20,7 +20,7 @@ from lumen.feature.manifest import (
 
 
 def wrong_rows(feature: Feature) -> Iterator[str]:
-    """Describe each kind of rows with another type than `Feature` declares, or with a row that can't be used."""
+    """Yield the faults of a manifest, at most one for each kind of row: a wrong type, or a row that can't be used."""
     declared = get_type_hints(Feature)
     if not (isinstance(feature.name, str) and feature.name):
         yield f"the name of its feature is `{feature.name!r}`, which is no text"
@@ -43,7 +43,7 @@ def wrong_rows(feature: Feature) -> Iterator[str]:
 
 
 def _wrong_fields(row: Any) -> Iterator[str]:
-    """Describe each field of a row that has another type than its class declares."""
+    """Yield a description of each field of a row whose type differs from the declared one."""
     for name, declared in get_type_hints(type(row)).items():
         kind, value = get_origin(declared) or declared, getattr(row, name)
         if isinstance(kind, type) and not isinstance(value, kind):
@@ -53,7 +53,7 @@ def _wrong_fields(row: Any) -> Iterator[str]:
 
 
 def _fault(row: Any) -> str:
-    """Return what is wrong with a row of the right type; empty if nothing is."""
+    """Return the fault of a row whose type is right; empty if it has none."""
     match row:
         case RobotRow(options=options):
             wrong = [each.name for each in options if each.name == "name" or not each.name.isidentifier()]
@@ -82,5 +82,5 @@ def _is_condition(text: str) -> bool:
 
 
 def kinds() -> Iterator[str]:
-    """Iterate over the names of the kinds of rows."""
+    """Yield the names of the kinds of rows: the fields of `Feature` except its name and API."""
     yield from (kind for kind in Feature._fields if kind not in ("name", "api"))

@@ -40,26 +40,28 @@ BUILT_IN = (
     "lumen.features.formats_robots:FEATURE",
     "lumen.features.formats_routes:FEATURE",
 )
-"""The manifests that come with Lumen, in the order in which their rows take part."""
+"""The manifests that come with Lumen, as import strings, in the order of their rows."""
 
 
 class FeatureFault(NamedTuple):
-    """Why a feature of an installed distribution, or a row of it, is ignored."""
+    """The reason why a feature of an installed distribution, or a row of it, is ignored."""
 
     distribution: Distribution
     message: str
 
 
 class Found(NamedTuple):
-    """All features; by their names, the distributions of those that do not come with Lumen; and the faults found."""
+    """All features, and the faults found in their manifests."""
 
     features: tuple[Feature, ...]
+    """The manifests, those that come with Lumen first."""
     installed: Mapping[str, Distribution]
+    """The distributions of the features that do not come with Lumen, by the feature's name."""
     faults: tuple[FeatureFault, ...]
 
 
 def resolve(where: str) -> Any:
-    """Return what an import string names: a module, or with `:NAME` an object of it.
+    """Return the object of an import string: a module, or with `:NAME` an object of it.
 
     Raises ImportError if there is no such module, AttributeError if the module has no such object.
     """
@@ -74,9 +76,9 @@ def features() -> tuple[Feature, ...]:
 
 
 def rows(kind: str) -> Iterator[tuple[Feature, Any]]:
-    """Iterate over the rows of a kind, such as `extras`, each with its feature; a row of a mapping is a pair.
+    """Yield the rows of a kind, such as `extras`, each with its feature.
 
-    Of two rows with the same name, the second is left out.
+    If the kind is a mapping, a row is a pair (name, value). Of two rows with the same name, the second is left out.
     """
     names: set[str] = set()
     for feature in features():
@@ -90,13 +92,13 @@ def rows(kind: str) -> Iterator[tuple[Feature, Any]]:
 
 @cache
 def table(kind: str) -> Mapping[str, Any]:
-    """Return the rows of a kind that is a mapping, by name."""
+    """Return the rows of a kind by name. The kind must be a mapping."""
     return {name: row for _, (name, row) in rows(kind)}
 
 
 @cache
 def owner(kind: str, name: str) -> Feature:
-    """Return the feature that the row of this name belongs to; `kind` is a mapping and has the row."""
+    """Return the feature that has the row of this name; `kind` must be a mapping with such a row."""
     return next(feature for feature, (key, _) in rows(kind) if key == name)
 
 
@@ -107,7 +109,7 @@ def distribution_of(feature: Feature) -> Distribution | None:
 
 @cache
 def found() -> Found:
-    """Return all features, and what is wrong with those that do not come with Lumen."""
+    """Return all features, and the faults of those that do not come with Lumen. A faulty feature is left out."""
     built_in = tuple(resolve(where) for where in BUILT_IN)
     others: dict[str, tuple[Feature, Distribution]] = {}
     faults: list[FeatureFault] = []
@@ -127,7 +129,7 @@ def found() -> Found:
 
 
 def _manifest(distribution: Distribution) -> tuple[Feature | None, str]:
-    """Return the feature of a distribution, or None and what is wrong with its manifest."""
+    """Return the feature of a distribution, and the first fault of its manifest; no feature if it can't be read."""
     try:
         feature = resolve(distribution.manifest)
         if not isinstance(feature, Feature):
@@ -142,12 +144,12 @@ def _manifest(distribution: Distribution) -> tuple[Feature | None, str]:
 
 
 def described(error: BaseException) -> str:
-    """Return the type and the message of an error."""
+    """Return the type and the message of an error, such as `KeyError: 'name'`."""
     return f"{type(error).__name__}: {error}"
 
 
 def _repeated(features: tuple[Feature, ...], installed: Mapping[str, Distribution]) -> Iterator[FeatureFault]:
-    """Iterate over the rows that are left out because an earlier feature has one of that name."""
+    """Yield a fault for each row that is left out because an earlier feature has one of that name."""
     owners: dict[tuple[str, str], str] = {}
     for feature in features:
         distribution = installed.get(feature.name)

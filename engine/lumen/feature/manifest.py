@@ -1,7 +1,8 @@
 """Manifests of features: the names, data and import strings that a feature adds to Lumen.
 
-A manifest imports nothing but `lumen.feature`, so reading all of them costs milliseconds. What a row names is imported
-when it is first needed. A kind whose rows have names is a mapping; every other kind is a tuple.
+A manifest imports nothing but `lumen.feature`, so reading all of them costs milliseconds. The objects that rows name by
+import strings are imported when they are first needed. A kind whose rows have names is a mapping; every other kind is a
+tuple.
 """
 
 from collections.abc import Mapping
@@ -16,16 +17,16 @@ VALUE_KINDS = ("null", "boolean", "number", "text", "list", "map", "any")
 
 
 class RobotOption(NamedTuple):
-    """An option of `lumen run` that only some robots take; its value is a text."""
+    """An option of `lumen run` that only some robots have; its value is a text."""
 
     name: str
     metavar: str
     """The placeholder of its value in `--help`."""
     help: str
     short: bool = False
-    """Whether it is `--NAME`; else it is `--robot-NAME`."""
+    """True if the option is `--NAME`; else it is `--robot-NAME`."""
     several: bool = False
-    """Whether it applies to all of several robots in one process; else it works with one robot only."""
+    """True if the option applies to all of several robots in one process; else it works with one robot only."""
 
     @property
     def flag(self) -> str:
@@ -46,27 +47,28 @@ class RobotRow(NamedTuple):
     Empty if the robot is in a process of its own.
     """
     set_up_house: str = ""
-    """An import string of a function from a mapping of requests, by the robots' names, to one of setups.
+    """An import string of a function that sets up several robots at once; if it is empty, `set_up` is called for each.
 
-    It sets up several robots at once; if it is empty, `set_up` is called for each.
+    The function gets a mapping of requests by the robots' names, and returns a mapping of setups.
     """
     real_time: bool = False
-    """Whether its time can't run faster than real time."""
+    """True if the robot's time can't run faster than real time."""
     bounded: bool = False
-    """Whether it keeps within the limits and speeds of its body itself; Lumen does that for other robots."""
+    """True if the robot keeps the limits and speeds of its body itself; Lumen does that for other robots."""
     options: tuple[RobotOption, ...] = ()
-    """The options of `lumen run` that it takes."""
+    """The robot's own options of `lumen run`."""
     examine: str = ""
     """An import string of a function for `lumen doctor --robot NAME`.
 
-    From the given options by name, it returns triples of a name, `ok`, `note`, `warning` or `error`, and a text.
+    It gets the given options by name, and returns triples: the subject of a check, its result (`ok`, `note`, `warning`
+    or `error`), and a text about it.
     """
 
 
 class BaseRow(NamedTuple):
     """A kind of base, which carries a body and moves it about: `roles: {base: {kind: NAME}}` in models/NAME.yaml.
 
-    A base with neither legs nor speeds stays in its place.
+    A base that neither walks nor drives stays in its place.
     """
 
     simulate: str
@@ -74,20 +76,20 @@ class BaseRow(NamedTuple):
     title: str
     """The name of such a body in messages, such as `a biped`."""
     legs: bool = False
-    """Whether it walks, as its gait and its joints allow."""
+    """True if the base walks, as its gait and its joints allow."""
     drives: bool = False
-    """Whether it drives, at most at the `speed` and `turn` in its YAML."""
+    """True if the base drives, at most at the `speed` and `turn` in its YAML."""
     wheels: bool = False
-    """Whether its YAML names the joints of its driven wheels, `left` and `right`."""
+    """True if its YAML names the joints of its driven wheels, `left` and `right`."""
 
     @property
     def moves(self) -> bool:
-        """Whether the robot can leave its place."""
+        """True if the robot can leave its place."""
         return self.legs or self.drives
 
 
 class SenseRow(NamedTuple):
-    """A sense of robots. A route of the project with its name, or `of` it, carries its readings.
+    """A sense of robots. Its readings are sent on the project's route of that name, or on one with that name in `of`.
 
     A sense without functions is one of images.
     """
@@ -117,16 +119,16 @@ class BusRow(NamedTuple):
     example: str = ""
     """An address, shown in `--help`."""
     within_process: bool = False
-    """Whether no other process can be on it."""
+    """True if no other process can be on the bus."""
     probe: str = ""
     """An import string of a function from an address to a `Probe`, with which `lumen doctor` examines the broker."""
     stream: str = ""
-    """An import string of a function from an address, a name and an offset to a `Stream`.
+    """An import string of a function from an address, the stream's name and an offset to a `Stream`.
 
     It returns None if there is no such stream.
     """
     side_queues: str = ""
-    """The names of the queues of unusable messages."""
+    """The names of the queues for unusable messages, in words for `lumen doctor`."""
 
 
 class ModuleRow(NamedTuple):
@@ -153,15 +155,15 @@ class FunctionRow(NamedTuple):
     returns: str
     """The kinds that its value may have."""
     example: str = ""
-    """How the arguments are written."""
+    """Arguments as an author would write them."""
     scoped: bool = False
-    """Whether it gets the `Scope` before its arguments."""
+    """True if the function gets the `Scope` before its arguments."""
     clock: bool = False
-    """Whether it reads the time of day."""
+    """True if the function reads the time of day."""
     draws: bool = False
-    """Whether it draws random values."""
+    """True if the function draws random values."""
     exact: bool = False
-    """Whether it checks its arguments itself and returns JSON data within Lumen's bounds; Lumen checks others."""
+    """True if it checks its arguments itself and returns JSON data within Lumen's bounds; else Lumen checks both."""
 
 
 class VerbRow(NamedTuple):
@@ -173,24 +175,24 @@ class VerbRow(NamedTuple):
     arguments: Mapping[str, Any] = {}
     """The JSON Schema of an object, without `$ref`s.
 
-    If it has one required property, that can be written short: `blink: 3`. Properties that the YAML leaves out get
-    their `default`.
+    If exactly one property is required, its value can be written alone: `blink: 3`. Properties that the YAML leaves out
+    get their `default`.
     """
     result: Mapping[str, Any] = {}
-    """The JSON Schema of what the performer returns."""
+    """The JSON Schema of the performer's result, an object."""
     takes: str = "0s"
     """The time that it takes: a duration that can contain expressions of the arguments, `{{ times * 0.4 }}s`."""
     parts: tuple[str, ...] = ()
-    """The parts of the body that it needs to itself (`lumen.language.body_parts`)."""
+    """The parts of the body that no other command may use meanwhile (`lumen.language.body_parts`)."""
     moves: bool = False
-    """Whether it moves the robot; then it is refused while the robot rests."""
+    """True if the verb moves the robot; then it is refused while the robot rests."""
     cancel: bool = True
-    """Whether the performer ends early after a stop, or after its state was left.
+    """True if the performer ends early after a stop, or after its state was left.
 
     Otherwise it continues. In either case the robot does not wait for it.
     """
     details: object = None
-    """For a verb that a file of a project declares: what the file says to its performer."""
+    """The settings for its performer, of a verb that a file of a project declares."""
     root: str = ""
     """The project's folder, for such a verb of a loaded project."""
     robot: str = ""
@@ -220,20 +222,20 @@ class Section(NamedTuple):
     Empty if schemas/lumen.schema.json has the section, for editors that read no manifests.
     """
     title: str = ""
-    """The name of the section in a list of changes, such as `the console`; without it the list quotes both values.
+    """The name of the section in a list of changes, such as `the console`; if empty, the list quotes both values.
 
-    With `entries` it names one of them, such as `place`.
+    With `entries`, it is the name of a single entry, such as `place`.
     """
     risk: RiskName = "cosmetic"
     """The risk of a change. With `restart` the old settings stay active until the next start."""
     entries: str = ""
     """The field of the settings that maps names to entries, which are compared one by one."""
     of_house: bool = False
-    """Whether the section belongs to the house: then no bundle of a fleet changes it."""
+    """True if the section belongs to the house: then no bundle of a fleet changes it."""
 
     @property
     def fixed(self) -> bool:
-        """Whether a change takes effect only at the next start."""
+        """True if a change takes effect only at the next start."""
         return self.risk == "restart"
 
 
@@ -252,14 +254,15 @@ class Subcommand(NamedTuple):
 
 
 class EditorRow(NamedTuple):
-    """The answer of `lumen lsp` to a method of the Language Server Protocol.
-
-    `answer` is a function of a `LanguageServer` of `lumen.features.editor.language_server` and the method's parameters.
-    `options` names the value of `lsprotocol` that tells the editor more, such as the letters that begin a completion.
-    """
+    """The answer of `lumen lsp` to a method of the Language Server Protocol."""
 
     answer: str
+    """An import string of a function of a `LanguageServer` and the method's parameters.
+
+    The class is in `lumen.features.editor.language_server`.
+    """
     options: str = ""
+    """An import string of the method's options for the editor, such as the letters that begin a completion."""
 
 
 IMPORTED_KINDS = ("behavior", "controller", "motion", "robot", "hint")
@@ -267,29 +270,31 @@ EXPORTED_KINDS = ("behavior", "controller", "diagram", "project")
 
 
 class Importer(NamedTuple):
-    """A kind of file of another tool that `lumen import` converts to one of Lumen's.
-
-    `kind` is `behavior`, `controller`, `motion` or `robot`. `read` names a `FileReader` of
-    `lumen.project.formats.importers`, for a motion a `MotionReader` of `lumen.project.formats.importers`, for a
-    robot a `RobotReader`. A `hint` is a file that holds nothing to convert: `read` gets its content and returns what to
-    do instead. `begins` is the import string of a function that recognises a file by its content, whatever its name.
-    """
+    """A kind of file of another tool that `lumen import` converts to one of Lumen's."""
 
     kind: str
+    """`behavior`, `controller`, `motion`, `robot`, or `hint` for a file that holds nothing to convert."""
     read: str
+    """An import string of a `FileReader`, `MotionReader` (for a motion) or `RobotReader` (for a robot).
+
+    These are in `lumen.project.formats.importers`. For a `hint` it is a function from the content to a predicate for a
+    sentence about the file, with advice.
+    """
     begins: str = ""
+    """An import string of a function that returns True for the content of such a file, whatever its name."""
 
 
 class Exporter(NamedTuple):
-    """A format that `lumen export` writes. `kind` is `behavior`, `controller`, `diagram` or `project`.
-
-    `write` names a function. It gets a `MachineDefinition` or `ControllerDefinition` and a function from paths to
-    places, and returns a text and diagnostics; for a diagram it gets a `MachineDefinition`, for a project a `Project`,
-    and returns a text.
-    """
+    """A format that `lumen export` writes."""
 
     kind: str
+    """`behavior`, `controller`, `diagram` or `project`."""
     write: str
+    """An import string of a function that returns the text.
+
+    For a diagram it gets a `MachineDefinition`, for a project a `Project`. For a behaviour or a controller it gets a
+    `MachineDefinition` or `ControllerDefinition` and a function from paths to places, and also returns diagnostics.
+    """
 
 
 class Phase(IntEnum):
@@ -298,7 +303,7 @@ class Phase(IntEnum):
     RECORD = auto()
     """Parts that receive everything that the others report."""
     BEHAVIOR = auto()
-    """No parts yet: the behaviour, which the others serve or watch."""
+    """The behaviour itself, which the other parts serve or watch. No feature has a part here yet."""
     WORLD = auto()
     """The visitor and the robot."""
     WATCH = auto()
@@ -330,9 +335,9 @@ class PartRow(NamedTuple):
     phase: Phase
     """When it is made and ticked. In a phase, parts are in the order of their names, except for `after`."""
     make: str
-    """An import string of a function from the services made so far to a part, several, or none."""
+    """An import string of a function from the services made so far to a part, a list of parts, or None."""
     when: str = ""
-    """The conditions that have to hold, separated by spaces.
+    """The conditions under which the part is made, separated by spaces: all must be true.
 
     `whole` (one process has everything), `brain` (the behaviour runs in this process), `follows` (it does not),
     `role:NAME` (this is that process of several), `option:NAME` (the plan has that option), `section:NAME` (lumen.yaml
@@ -341,9 +346,9 @@ class PartRow(NamedTuple):
     after: str = ""
     """The part of the same phase after which it comes."""
     claimed: bool = False
-    """Whether it is made after the process has claimed the robot on the bus.
+    """True if the part is made only after the process has claimed the robot on the bus.
 
-    Such a part opens what another process may have open.
+    Such a part opens a resource that another process may still have open.
     """
 
 
@@ -359,87 +364,87 @@ class Feature(NamedTuple):
     parts: tuple[PartRow, ...] = ()
     """Parts of an exhibition."""
     roles: tuple[str, ...] = ()
-    """Roles of a process of several: `lumen run --only ROLE` makes the parts that ask for `role:ROLE`."""
+    """Roles of one of several processes: `lumen run --only ROLE` makes the parts with the condition `role:ROLE`."""
     rules: tuple[str, ...] = ()
     """Functions that report faults of a `ProjectDraft`. Their modules declare the codes of these reports."""
     last_rules: tuple[str, ...] = ()
-    """Such functions that run after all others: those that report unused things."""
+    """Such functions that run after all others, because they report unused names."""
     codes: tuple[str, ...] = ()
     """Other modules that declare codes, such as those that read files."""
     pages: tuple[str, ...] = ()
-    """Packages with a `CODE.md` for codes, in the form that `lumen.lint.pages` describes."""
+    """Packages with a page `CODE.md` for each code, in the form that `lumen.lint.pages` describes."""
     fixes: Mapping[str, str] = {}
-    """For a code, the function that proposes how to repair a finding, as `lumen.lint.fixes` describes."""
+    """By code, the function that proposes repairs of a finding, as `lumen.lint.fixes` describes."""
     subcommands: Mapping[str, Subcommand] = {}
     run_options: tuple[str, ...] = ()
     """Classes of options of `lumen run`: each a `RunExtra` of `lumen.cli.extras`."""
     lint_options: tuple[str, ...] = ()
     """Classes of options of `lumen lint`: each a `LintExtra` of `lumen.cli.extras`."""
     finding_formats: Mapping[str, str] = {}
-    """For `--format NAME` of findings, the `Renderer` of `lumen.cli.render`."""
+    """By the name in `--format NAME` of findings, the `Renderer` of `lumen.cli.render`."""
     verdict_formats: Mapping[str, str] = {}
-    """For `lumen test --format NAME`, the function from a `Verdict` to text."""
+    """By the name in `lumen test --format NAME`, the function from a `Verdict` to text."""
     editor_requests: Mapping[str, EditorRow] = {}
-    """Requests and notifications of an editor that `lumen lsp` answers, by method, as `textDocument/formatting`."""
+    """Requests and notifications of editors that `lumen lsp` answers, by method: `textDocument/formatting`."""
     editor_commands: Mapping[str, str] = {}
-    """For a command that an editor has the language server run, a function of its `LanguageServer` and arguments."""
+    """By command of an editor, the function that the language server runs, with a `LanguageServer` and arguments."""
     importers: Mapping[str, Importer] = {}
-    """Readers of other tools' files, by the ending of a file's name in small letters, as `.scxml`."""
+    """Readers of other tools' files, by the ending of a file's name in lower case, such as `.scxml`."""
     exporters: Mapping[str, Exporter] = {}
     """Writers for `lumen export`, by the name of the format."""
     format_tables: Mapping[str, str] = {}
-    """For a format that is imported, its `FormatTable` of names that are read, lost or without meaning."""
+    """By imported format, its `FormatTable` of names that are read, lost or without meaning."""
     sections: Mapping[str, Section] = {}
     """Sections of lumen.yaml by their keys; `modules.show` is the key `show` under `modules`."""
     files: Mapping[str, str] = {}
-    """For a YAML file next to lumen.yaml, the function that builds its settings from its data, as `fleet.yaml`.
+    """By the name of a YAML file next to lumen.yaml, such as `fleet.yaml`, the function that builds its settings.
 
-    The function gets the data, a report, and the file's `name` without its ending; schemas/NAME.schema.json describes
-    the data. `ProjectDraft.beside` has what it returned, by the name of the file.
+    The function gets the file's data, a report, and the file's `name` without its ending; schemas/NAME.schema.json
+    describes the data. The result is in `ProjectDraft.beside`, by the name of the file.
     """
     verbs: Mapping[str, VerbRow] = {}
     """Verbs of the YAML that the robot performs, by their names."""
     verb_files: Mapping[str, str] = {}
-    """For a folder of a project in which each YAML file declares a verb, the function that makes its `VerbRow`.
+    """By a folder of a project whose YAML files each declare a verb, the function that makes a file's `VerbRow`.
 
     It gets the checked data of a file, its `DocumentReport`, and `name` and `languages` as keywords, and returns None
     if the file does not describe a usable verb.
     """
     new_files: Mapping[str, str] = {}
-    """For `lumen new KIND NAME`, the function that writes the files of such a thing into a project.
+    """By the kind in `lumen new KIND NAME`, the function that adds the files to a project.
 
     It gets the project's folder and the name, and returns the paths of the files, the one to read first in front. It
-    raises UsageError if there can't be such a thing.
+    raises UsageError if the files can't be made, for example because the name exists.
     """
     modules: Mapping[str, ModuleRow] = {}
     robots: Mapping[str, RobotRow] = {}
     functions: Mapping[str, FunctionRow] = {}
     bases: Mapping[str, BaseRow] = {}
     links: tuple[str, ...] = ()
-    """Functions from a `Body` and the folder of its models to `BodyLinks` (`lumen.robot.links`); the first is used."""
+    """Functions from a `Body` and its models' folder to `BodyLinks` (`lumen.robot.links`); the first one is used."""
     buses: Mapping[str, BusRow] = {}
     senses: Mapping[str, SenseRow] = {}
     voices: Mapping[str, str] = {}
-    """For `lumen run --voice NAME`, the class of a `lumen.run.voices.RobotVoice`.
+    """By the name in `lumen run --voice NAME`, a class that is a `lumen.run.voices.RobotVoice`.
 
     It is made with a language, the WAV file to write or None, and the `AudioTrack` of a film or None.
     """
     before_start: tuple[str, ...] = ()
-    """Functions that get the folder of a project before a run reads its files: they finish what was interrupted."""
+    """Functions that a run calls with the project's folder before it reads the files, to finish interrupted work."""
     failures: tuple[str, ...] = ()
     """Functions that inform people of a `RunFailure` (`lumen.run.run_start`), an error that ends a run.
 
-    They return a function that waits until people have it, or None.
+    They return a function that waits until the message is delivered, or None.
     """
     file_forgetters: tuple[str, ...] = ()
-    """Functions that forget a person in files, as `lumen memory forget NAME` does, in the order of the features.
+    """Functions that delete a person's data in files for `lumen memory forget NAME`, in the order of the features.
 
-    One gets the folder of an exhibition's home, the name, and a `Forgetting` (`lumen.run.forgetting.added`), to which
-    it adds what it deleted and what is left.
+    A function gets the folder of an exhibition's home, the name, and a `Forgetting` (`lumen.run.forgetting.added`), to
+    which it adds the deleted and the remaining data.
     """
     forgets: tuple[str, ...] = ()
-    """Functions and classes that forget a person (`lumen memory forget NAME`), while an exhibition runs.
+    """Functions and classes that delete a person's data for `lumen memory forget NAME` while an exhibition runs.
 
-    A function gets a `PersonName` (`lumen.language.people`). A class has a method `forget` that gets it: the part or
-    service of that class forgets, if the process has one.
+    A function gets a `PersonName` (`lumen.language.people`). Of a class, the method `forget` of the part or service of
+    that class gets it, if the process has one.
     """

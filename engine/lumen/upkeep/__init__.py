@@ -1,1 +1,1 @@
-"""Infrastructure of a long run: watched threads, counts of drops, rate limits, pauses between attempts."""
+"""Infrastructure for long runs: watched threads and processes, counts of drops, rate limits, garbage collection."""

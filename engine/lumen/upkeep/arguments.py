@@ -1,4 +1,4 @@
-"""Checks of the arguments of public functions, with errors that name what is allowed."""
+"""Check arguments of public functions; the errors name the argument (`what`) and the allowed values."""
 
 from collections.abc import Mapping
 from math import isfinite, isnan
@@ -9,13 +9,16 @@ from lumen.errors import UsageError
 
 
 def need(value: Any, kind: type | tuple[type, ...], what: str, meant: str) -> None:
-    """Raise UsageError if a value is not of the right type; a bool is not a number."""
+    """Raise UsageError if a value is not of a type in `kind`; a bool counts as one only if `kind` is bool.
+
+    `meant` describes the type in the message.
+    """
     if not isinstance(value, kind) or (isinstance(value, bool) and kind is not bool):
         raise UsageError(f"{what} must be {meant}, not {_shown(value)}")
 
 
 def need_methods(value: Any, kind: type, what: str) -> None:
-    """Raise UsageError if a value lacks a method of a protocol."""
+    """Raise UsageError if a value lacks a public method of the protocol `kind`."""
     if missing := missing_methods(value, kind):
         names = f"the method `{missing[0]}`" if len(missing) == 1 else f"the methods {', '.join(missing)}"
         protocol = f"{kind.__module__}.{kind.__name__}"
@@ -23,7 +26,7 @@ def need_methods(value: Any, kind: type, what: str) -> None:
 
 
 def missing_methods(value: Any, kind: type) -> list[str]:
-    """Return the methods of a protocol that a value lacks."""
+    """Return the names of the public methods of the protocol `kind` that a value lacks."""
     names = dir(value)
     return [name for name in vars(kind) if not name.startswith("_") and name not in names]
 
@@ -43,7 +46,7 @@ def need_text(value: Any, what: str, *, empty: bool = False) -> None:
 
 
 def need_number(value: Any, what: str, *, finite: bool = True) -> None:
-    """Raise UsageError if a value is not a number; with `finite` also if it is infinite."""
+    """Raise UsageError if a value is not a number, or is NaN; with `finite` also if it is infinite."""
     try:
         sound = not isinstance(value, str | bytes | bool) and not isnan(value) and (not finite or isfinite(value))
     except (TypeError, ValueError, OverflowError):
@@ -53,7 +56,7 @@ def need_number(value: Any, what: str, *, finite: bool = True) -> None:
 
 
 def need_numbers(values: Any, what: str) -> None:
-    """Raise UsageError if a value is not a map of numbers."""
+    """Raise UsageError if a value is not a map from strings to finite numbers."""
     need_map(values, what)
     for key, value in values.items():
         need_number(value, f"`{key}` of {what}")

@@ -1,4 +1,4 @@
-"""Counts of dropped items by key, and lines about them: a flood gives a line and a count, not a line each."""
+"""Count dropped items by key, and write lines about them: one for the first, then counts instead of a line each."""
 
 import logging
 import re
@@ -11,9 +11,9 @@ from math import inf
 from typing import TypeVar
 
 TELL_PERIOD = 10.0
-"""Least time between two lines about a key [s]."""
+"""The minimum time between two lines about a key [s]."""
 MAX_KEYS = 1_000
-"""Keys that are counted separately; drops under further ones are counted as `OTHERS`."""
+"""The maximum number of keys that are counted separately; drops under further keys are counted as `OTHERS`."""
 OTHERS = "other keys"
 
 T = TypeVar("T")
@@ -21,10 +21,10 @@ _DIGITS = re.compile(r"\d+")
 
 
 class Drops:
-    """A counter of drops, with lines about them: the first at once, then a count every ten seconds.
+    """A counter of drops that reports them by `write`: the first under a key at once, then a count every ten seconds.
 
-    Safe from any thread. The owner calls `tell` from time to time, and at its end, so that the last drops are reported
-    too.
+    All methods may be called on any thread. The owner calls `tell` from time to time, and at its end, so that the last
+    drops are reported too. `what` names the dropped items in the lines.
     """
 
     def __init__(
@@ -33,7 +33,7 @@ class Drops:
         self._write, self._what, self._clock = write, what, clock
         self._counts: dict[str, int] = {}
         self.untold: dict[str, tuple[int, str]] = {}
-        """Drops that are not reported yet, by key, with the reason."""
+        """The number of drops that are not reported yet and their last reason, by key."""
         self._told: dict[str, float] = {}
         self._changing = threading.Lock()
 
@@ -44,7 +44,7 @@ class Drops:
             return dict(self._counts)
 
     def add(self, key: str, why: str, count: int = 1) -> None:
-        """Count drops under a key."""
+        """Count drops under a key; `why` is the reason in the line about them."""
         with self._changing:
             key = key if key in self._counts or len(self._counts) < MAX_KEYS else OTHERS
             first = key not in self._told
@@ -57,14 +57,14 @@ class Drops:
             self._write(f"{self._what} on `{key}` are dropped: {why}")
 
     def push(self, waiting: deque[T], item: T, key_of: Callable[[T], str], why: str) -> None:
-        """Append to a bounded queue; if it is full, drop the oldest item and count it under its key."""
+        """Append an item to a bounded queue; if it is full, drop the oldest item and count it under its key."""
         if len(waiting) == waiting.maxlen:
             with suppress(IndexError):  # another thread has just removed it
                 self.add(key_of(waiting[0]), why)
         waiting.append(item)
 
     def tell(self, *, all: bool = False) -> None:
-        """Report the drops under each key whose last line is ten seconds old, or `all` of them."""
+        """Report the drops under each key whose last line is at least ten seconds old; with `all`, under every key."""
         if not self.untold:
             return
         now = self._clock()
@@ -86,9 +86,10 @@ class DropLog(Drops):
 
 
 class ReasonLog:
-    """A log of reasons, each once in ten seconds, whatever its numbers are; repetitions are counted in `drops`.
+    """Logs reasons as warnings, each at most once in ten seconds; repetitions are counted in `drops`.
 
-    `line` has placeholders for `%(key)s` and `%(reason)s`.
+    Reasons that differ only in numbers are the same. `line` is the text, with the placeholders `%(key)s` and
+    `%(reason)s`.
     """
 
     def __init__(
@@ -103,7 +104,7 @@ class ReasonLog:
         self._said: dict[tuple[str, str], float] = {}
 
     def __call__(self, key: str, reason: str) -> bool:
-        """Log a reason, or count it as dropped; return whether it was logged."""
+        """Log a reason and return True, or count it as dropped and return False."""
         kind, now = (key, _DIGITS.sub("#", reason)), self._clock()
         if now - self._said.get(kind, -inf) < TELL_PERIOD or (kind not in self._said and len(self._said) >= MAX_KEYS):
             self.drops.add(key, reason)

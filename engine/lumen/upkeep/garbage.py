@@ -1,14 +1,14 @@
-"""Control of Python's garbage collection: none if it would not pay, and none that delays the robot."""
+"""Control Python's garbage collection: none during short work, and none that delays the robot."""
 
 import gc
 from collections.abc import Iterator
 from contextlib import contextmanager
 
 NEVER = 2**31 - 1
-"""Threshold of smaller collections at which Python in effect never begins a full one."""
+"""A threshold of smaller collections that is never reached, so that Python begins no full collection."""
 
 RARELY = 100_000
-"""New objects between two collections in a short-lived process: about 10 MB."""
+"""The number of new objects between two collections in a short-lived process, about 10 MB."""
 
 
 @contextmanager
@@ -29,11 +29,11 @@ def search_rarely() -> None:
 
 
 class GcScheduler:
-    """A scheduler of full collections, called after each tick, when the most time is left until the next.
+    """A scheduler of full collections. Call it after each tick, when the most time is left until the next.
 
-    Objects that exist when it is made are never searched again, and Python begins no full collection itself, at any
-    moment and on any thread: a collection of everything that was imported and loaded would last a tick or more, one of
-    later objects lasts some milliseconds. `close` restores the usual settings.
+    It stops Python from beginning full collections itself, at any moment and on any thread. Objects that exist when it
+    is made are never searched again: with everything that was imported and loaded, a collection would last a tick or
+    more; with later objects alone it lasts some milliseconds.
     """
 
     def __init__(self) -> None:
@@ -42,7 +42,7 @@ class GcScheduler:
         gc.set_threshold(*self._usual[:2], NEVER)
 
     def __call__(self, _: float = 0.0) -> None:
-        """Run a full collection if one is due."""
+        """Run a full collection if Python would have begun one since the last."""
         if gc.get_count()[2] > self._usual[2]:
             gc.collect()
 

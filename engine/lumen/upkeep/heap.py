@@ -1,18 +1,18 @@
-"""Return of unused memory to the system in long runs."""
+"""Return unused memory to the system in long runs."""
 
 import ctypes
 
 TRIM_THRESHOLD, MMAP_THRESHOLD = -1, -3
 """The parameters of the C library that are set (`malloc.h`)."""
 LARGE = 128 * 1024
-"""Size from which a block is mapped separately and returned when freed [bytes]; this is glibc's initial value."""
+"""The size from which a block is mapped separately and returned when freed [bytes]; it is glibc's initial value."""
 
 
 def give_back() -> None:
     """Make glibc return freed memory from now on; with another C library nothing changes.
 
-    By default it keeps ever larger blocks, between which live data is scattered: each saved file cost a running
-    exhibition 0.5 MB.
+    By default glibc raises that size in a long run and keeps freed blocks between live data: a running exhibition grew
+    by 0.5 MB with each saved file.
     """
     try:
         mallopt = ctypes.CDLL(None).mallopt

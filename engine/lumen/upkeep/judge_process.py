@@ -1,6 +1,6 @@
-"""A process that answers questions under limits, from both ends: `JudgeProcess` asks, `answering` is its other end.
+"""A process that answers questions under limits: `JudgeProcess` in the parent asks, `answering` in the child answers.
 
-Both are Lumen's own programs with private pipes. A message is a length and a pickled value.
+Both are Lumen's own programs, connected by private pipes. A message is a length and a pickled value.
 """
 
 import os
@@ -21,14 +21,14 @@ MAX_MEMORY = 1 << 30
 ANSWER_TIMEOUT = 60.0
 """The time limit for judging the files of a project [s]."""
 NICENESS = 5
-"""The `nice` value of a process under limits: other processes, above all the robot's, run first."""
+"""The `nice` value of a process under limits, which lets other processes, above all the robot's, run first."""
 OUT_OF_MEMORY = 77
 """The exit code of a process that was refused more memory."""
 _LENGTH = struct.Struct(">Q")
 
 
 class Fault(Enum):
-    """Why there is no answer."""
+    """The reasons why there is no answer."""
 
     LATE = "it took too long"
     MEMORY = "it was refused more memory"
@@ -37,7 +37,7 @@ class Fault(Enum):
 
 
 class NoAnswerError(Exception):
-    """The process gave no answer and has ended; `code` is its exit code."""
+    """Raised if the process gave no answer and has ended; `code` is its exit code, negative for a signal."""
 
     def __init__(self, fault: Fault, code: int) -> None:
         super().__init__(fault.value)
@@ -58,8 +58,8 @@ class _SizeError(Exception):
 class JudgeProcess:
     """A process that runs `command` and answers one question at a time; it can be started again after its end.
 
-    An answer may have `max_answer` [bytes], None for no limit. `end` may be called on any thread: an open question then
-    raises NoAnswerError.
+    `max_answer` is the maximum size of an answer [bytes], None for no limit. `end` may be called on any thread: an open
+    `request` then raises NoAnswerError.
     """
 
     def __init__(self, command: Sequence[str], max_answer: int | None = None) -> None:
@@ -69,12 +69,12 @@ class JudgeProcess:
 
     @property
     def started(self) -> bool:
-        """Whether it was started, and its end has not been noticed since."""
+        """True if the process was started and its end has not been noticed since."""
         return self._child is not None
 
     @property
     def alive(self) -> bool:
-        """Whether it is running."""
+        """True if the process is running."""
         child = self._child
         return child is not None and child.poll() is None
 
@@ -117,7 +117,7 @@ class JudgeProcess:
         return answer
 
     def send(self, message: Any) -> None:
-        """Send a message that has no answer; if the process has ended, the next question fails."""
+        """Send a message that has no answer; if the process has ended, it is lost, and the next request fails."""
         if child := self._child:
             self._send(child, message)
 
@@ -155,7 +155,7 @@ class JudgeProcess:
 
 
 class AnswerPipe:
-    """The questions of a `JudgeProcess`, one after the other, and the channel for the answers."""
+    """The child's end: iterates over the questions of a `JudgeProcess`, and sends the answers."""
 
     def __init__(self, questions: IO[bytes], answers: IO[bytes]) -> None:
         self._questions, self._answers = questions, answers
@@ -174,7 +174,10 @@ class AnswerPipe:
         self._answers.flush()
 
     def answer(self, judge: Callable[[], Any], seconds: float = 0.0) -> None:
-        """Send the return value or the exception of `judge`; the system ends the process after `seconds` [s]."""
+        """Send the return value or the exception of `judge`.
+
+        The system ends the process if that lasts longer than `seconds` [s]; 0 sets no limit.
+        """
         limit_time(seconds)
         answer: Any
         try:
@@ -189,7 +192,11 @@ class AnswerPipe:
 
 @contextmanager
 def answering(max_memory: int | None = None) -> Iterator[AnswerPipe]:
-    """Answer the parent until it closes the pipe, with at most `max_memory` [bytes]; prints go to the terminal."""
+    """Yield the pipe to the parent; the block ends when the parent closes it.
+
+    The process may use at most `max_memory` [bytes], None for no limit, and exits with OUT_OF_MEMORY if it needs more.
+    Prints go to standard error.
+    """
     if max_memory is not None:
         if hasattr(os, "nice"):
             os.setpriority(os.PRIO_PROCESS, 0, NICENESS)

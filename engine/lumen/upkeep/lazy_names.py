@@ -1,4 +1,4 @@
-"""Packages that offer names of other modules, each imported when it is first used."""
+"""Let a package offer names of other modules, each imported when it is first used."""
 
 import sys
 from collections.abc import Callable, Mapping, Sequence
@@ -7,7 +7,7 @@ from typing import Any
 
 
 def lazy(package: str, homes: Mapping[str, Sequence[str]]) -> Callable[[str], Any]:
-    """Return the `__getattr__` of a package; `homes` has the names that it offers, by the modules that define them.
+    """Return the `__getattr__` of a package; `homes` are the names that it offers, by the module that defines them.
 
     The function raises AttributeError for any other name.
     """

@@ -1,4 +1,4 @@
-"""Folders of Lumen: private ones with names, pictures or keys, the state of a user, and a cache that may be deleted."""
+"""Lumen's own folders: private ones with names, pictures or keys, the user's state, and a cache that may be deleted."""
 
 import os
 import stat
@@ -9,7 +9,7 @@ IGNORE_FILE = ".gitignore"
 _IGNORING = b"# Written by Lumen: here are names, pictures and keys.\n*\n"
 
 NO_LINK = getattr(os, "O_NOFOLLOW", 0)
-"""The flag that refuses links: a link in a foreign project may lead to any of the user's files."""
+"""The flag of `os.open` that refuses links: a link in a foreign project may lead to any of the user's files."""
 
 
 def private_folder(folder: Path) -> None:
@@ -25,10 +25,10 @@ def private_folder(folder: Path) -> None:
 
 
 def write_private(path: Path, content: bytes, *, durable: bool = False) -> None:
-    """Write a file for its owner only, completely or not at all. Raises OSError.
+    """Write a file that only its owner can read, completely or not at all. Raises OSError.
 
-    A crash of the process loses nothing. After a power cut the previous file may come back, unless `durable` forces the
-    content to the disk.
+    A crash of the process loses neither the old nor the new file. After a power cut the old one may come back, unless
+    `durable` forces the content to the disk.
     """
     draft = path.with_name(f"{path.name}.new")
     with open(os.open(draft, os.O_WRONLY | os.O_CREAT | os.O_TRUNC | NO_LINK, 0o600), "wb") as file:
@@ -51,21 +51,21 @@ def state_folder() -> Path:
 
 
 MAX_FILES = 64
-"""Default number of files of a kind that are kept, those made or read last."""
+"""The default number of files of a kind that are kept: those written or read last."""
 
 
 class CacheFolder:
     """The cached files of one kind, by name; a file that can't be read or written counts as missing.
 
-    It is among the user's own files and not in a project, because its content is trusted, and a project from elsewhere
-    may contain any file. A folder that others may write to is not used.
+    The folder is among the user's own files and not in the project, because its content is trusted, while a project of
+    other people may contain any file. A folder that other users can write to is not used.
     """
 
     def __init__(self, kind: str, most: int = MAX_FILES) -> None:
         self._folder, self._most = _own() / kind, most
 
     def read(self, name: str) -> bytes | None:
-        """Return the content under a name, or None."""
+        """Return the content under a name; None if no file has it."""
         try:
             content = (self._folder / name).read_bytes() if self._private() else None
         except OSError:
@@ -75,7 +75,7 @@ class CacheFolder:
         return content
 
     def write(self, name: str, content: bytes) -> None:
-        """Save a content completely or not at all; delete the oldest files above the limit."""
+        """Save a content completely or not at all; delete the files beyond the limit that were not used for longest."""
         draft = self._folder / f".{os.urandom(16).hex()}"
         try:
             self._folder.mkdir(mode=0o700, parents=True, exist_ok=True)
@@ -90,7 +90,7 @@ class CacheFolder:
                 draft.unlink(missing_ok=True)
 
     def _private(self) -> bool:
-        """Return whether only this user may write to the folder; on Windows users' folders are always separate."""
+        """Return True if only this user can write to the folder; on Windows users' folders are always separate."""
         if not hasattr(os, "getuid"):
             return True
         status = self._folder.stat()

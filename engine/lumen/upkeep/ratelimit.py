@@ -1,4 +1,4 @@
-"""How often something may happen: requests per second by key, pauses between attempts, and lines of a log."""
+"""Limit how often something happens: messages per second by key, attempts after failures, and lines of a log."""
 
 import logging
 import time
@@ -8,16 +8,19 @@ from dataclasses import dataclass
 from math import inf
 
 MAX_DOUBLINGS = 60
-"""Limit of the doublings, far beyond any useful pause, so that the float does not overflow."""
+"""The maximum number of doublings of a pause, so that the float does not overflow."""
 
 
 def pause_after(failures: int, first: float, longest: float = inf) -> float:
-    """Return the pause after a number of failures in a row [s]: `first` after one, 0 after none."""
+    """Return the pause after a number of failures in a row [s]: 0 after none, `first` after one, then twice the last.
+
+    It is never longer than `longest`.
+    """
     return min(first * 2.0 ** min(failures - 1, MAX_DOUBLINGS), longest) if failures > 0 else 0.0
 
 
 class Backoff:
-    """A counter of failures in a row, with the pause after each [s]."""
+    """A counter of failures in a row, which computes the pause after each; see `pause_after`."""
 
     def __init__(self, first: float, longest: float = inf) -> None:
         self._first, self._longest, self._failures = first, longest, 0
@@ -28,33 +31,36 @@ class Backoff:
         return pause_after(self._failures, self._first, self._longest)
 
     def reset(self) -> None:
-        """Note a success: the next pause is the first again."""
+        """Record a success, after which the pauses begin with the first again."""
         self._failures = 0
 
 
 BURST = 5.0
-"""Length of the silence that can be made up for at once [s]."""
+"""The length of a silence after which all its messages may come at once [s]; of a longer one, only so many."""
 MAX_KEYS = 10_000
-"""Keys that are counted at a time, those used last."""
+"""The maximum number of keys that are counted at a time: those used last."""
 MAX_SENDERS = 16
-"""Senders of a key that are counted separately at a time; further ones are counted together."""
+"""The maximum number of a key's senders that are counted separately at a time; further ones are counted together."""
 
 
 @dataclass(slots=True)
 class TokenBucket:
-    """Tokens that are used one by one and come back with time. Times are those of one clock [s]."""
+    """The tokens of a token bucket: `tokens` were left at the time `since` [s]. All times are of one clock."""
 
     tokens: float
     since: float
 
     def wait(self, now: float, rate: float, most: float) -> float:
-        """Return the time until there is a token [s], 0 if there is one; `rate` per second come back, up to `most`."""
+        """Return the time from `now` until a token is available [s]; 0 if one is, which the caller may then remove.
+
+        `rate` tokens are added per second, up to `most`.
+        """
         self.tokens, self.since = min(most, self.tokens + rate * (now - self.since)), now
         return 0.0 if self.tokens >= 1.0 else (1.0 - self.tokens) / rate
 
 
 class RateLimiter:
-    """A token bucket for each key: after a silence it allows at once what it otherwise allows in `BURST`."""
+    """A token bucket for each key: after a silence, as many messages as otherwise in BURST [s] may come at once."""
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
         self._clock = clock
@@ -62,7 +68,10 @@ class RateLimiter:
         self._senders: dict[str, dict[str, float]] = {}
 
     def apart(self, key: str, sender: str) -> str:
-        """Return the key that counts a sender's messages: a separate one, unless too many others sent recently."""
+        """Return the key for `wait` under which a sender's messages are counted.
+
+        It is the sender's own, unless MAX_SENDERS others have sent within BURST [s].
+        """
         if len(self._senders) > MAX_KEYS:
             self._senders.clear()
         now, senders = self._clock(), self._senders.setdefault(key, {})
@@ -75,7 +84,7 @@ class RateLimiter:
         return f"{key} {sender}"
 
     def wait(self, key: str, rate: float) -> float:
-        """Count one and return 0 if it is within `rate` per second; else return the time until the next one is [s]."""
+        """Count a message and return 0 if the key allows it at `rate` per second; else return the time to wait [s]."""
         now, most = self._clock(), max(BURST * rate, 1.0)
         if (bucket := self._buckets.get(key)) is None:
             bucket = self._buckets[key] = TokenBucket(most, now)
@@ -90,11 +99,11 @@ class RateLimiter:
 
 
 MAX_LINES = 1_000
-"""The most different lines that are logged; further ones are dropped."""
+"""The maximum number of different lines that are logged; further ones are dropped."""
 
 
 class OnceLog:
-    """Logs each line once."""
+    """Logs each line once, as a warning."""
 
     def __init__(self, log: logging.Logger) -> None:
         self._log = log

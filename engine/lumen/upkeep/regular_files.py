@@ -1,4 +1,4 @@
-"""Safe reading of a path that may be a pipe, a device, a link to elsewhere, or a file larger than memory."""
+"""Read a path safely, although it may be a pipe, a device, a link to another place, or a file larger than memory."""
 
 import errno
 import os
@@ -13,7 +13,8 @@ MEGABYTE = 1_000_000
 def read_regular(path: Path, most: int, *, follow: bool = True) -> bytes:
     """Return the content of a regular file of at most `most` bytes, without blocking.
 
-    Raises OSError, with the reason as its `strerror`, for anything else; without `follow` also for a link.
+    Raises OSError, with the reason as its `strerror`, for a larger file or anything else; without `follow` also for a
+    link.
     """
     flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
     handle = os.open(path, flags if follow else flags | NO_LINK)

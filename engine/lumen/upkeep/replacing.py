@@ -1,4 +1,4 @@
-"""Saving of a file completely or not at all: the content is written to a new file, which replaces the old one."""
+"""Save a file completely or not at all: the content is written to a new file, which replaces the old one."""
 
 import errno
 import os
@@ -9,15 +9,15 @@ from contextlib import suppress
 from pathlib import Path
 
 _IN_PLACE = (errno.EBUSY, errno.EACCES, errno.EPERM, errno.EROFS)
-"""Errors of a folder that does not allow a new file, or of a file that is a mount."""
+"""The errors of a folder in which no file can be made, and of a file that can't be replaced because it is a mount."""
 
 
 def replace_file(path: Path, content: bytes) -> None:
     """Save the content under a path. If that fails, raise OSError and leave an existing file unchanged.
 
-    An existing file keeps its owner and permissions. For a link the target is replaced. Devices and pipes are written
-    to directly, and so are files that can't be replaced: those of another owner, mounted ones, and those in a read-only
-    folder. A file without write permission is not replaced.
+    An existing file keeps its owner and permissions. If the path is a link, the link's target is replaced. Devices and
+    pipes are written to directly, and so are files that can't be replaced: those of another owner, mounted ones, and
+    those in a read-only folder. A file without write permission raises PermissionError.
     """
     try:
         there = os.stat(path)

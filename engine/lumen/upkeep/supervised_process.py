@@ -1,4 +1,4 @@
-"""A user's program for an exhibition: started, restarted with pauses, and ended with everything it started.
+"""Run a user's program for an exhibition: start it, restart it after pauses, and end it with all that it started.
 
 The program is in its own process group, together with a shell that waits for the end of a pipe from this process. If
 this process is gone, however it ended, the shell kills the group.
@@ -20,26 +20,26 @@ from lumen.upkeep.ratelimit import Backoff
 from lumen.upkeep.threads import WatchedThread
 
 FIRST_PAUSE, LONGEST_PAUSE = 1.0, 60.0
-"""Shortest and longest pause before a program is started again [s]."""
+"""The shortest and the longest pause before a program is started again [s]."""
 STEADY = 60.0
-"""Running time after which the pauses begin with the first again [s]."""
+"""The running time after which the pauses begin with the first again [s]."""
 END_TIMEOUT = 2.0
-"""Time for a program to exit after SIGTERM [s]."""
+"""The time limit for a program to exit after SIGTERM [s]."""
 MAX_LINES, MAX_LINE = 200, 4_000
-"""Waiting lines of a program, and bytes of a line; further lines are counted, and longer ones cut."""
+"""The maximum number of waiting lines, and of bytes in a line; further lines are counted, and longer ones split."""
 
 _GUARD = """
 exec 3<&0
 ( read -r _ <&3; kill -KILL 0 ) 2>/dev/null 1>&2 &
 exec "$@" 3<&- </dev/null
 """
-"""The shell: a child waits for the end of standard input, and the shell itself becomes the program."""
+"""The shell's script: a child waits for the end of standard input, and the shell itself becomes the program."""
 
 
 class SupervisedProcess:
-    """A program that is kept running; `tick` starts it and notices its end.
+    """A program that is kept running: `tick` starts it, and starts it again after its end.
 
-    `command` is run in `folder`. All methods must be called on one thread.
+    `command` is run in `folder`, with `environment` as its whole environment. All methods must be called on one thread.
     """
 
     def __init__(
@@ -53,7 +53,7 @@ class SupervisedProcess:
     ) -> None:
         self.name, self.command, self._folder, self._environment = name, tuple(command), folder, dict(environment)
         self.began = 0.0
-        """When it was started last, by `clock` [s]."""
+        """When the program was last started, by `clock` [s]."""
         self._clock, self._next = clock, 0.0
         self._backoff = Backoff(FIRST_PAUSE, LONGEST_PAUSE)
         self._process: subprocess.Popen[bytes] | None = None
@@ -64,16 +64,16 @@ class SupervisedProcess:
 
     @property
     def running(self) -> bool:
-        """Whether it is running."""
+        """True if the program is running."""
         return self._process is not None and self._process.poll() is None
 
     @property
     def next(self) -> float:
-        """When it will be started again, by the clock [s]; meaningless while it runs."""
+        """When the program will be started again, by `clock` [s]; meaningless while it runs."""
         return self._next
 
     def tick(self) -> str:
-        """Start the program when due; return why it has ended since the last call, empty if it has not."""
+        """Start the program when it is due; return the reason if it has ended or could not be started, else empty."""
         now = self._clock()
         if self._closed or self.running:
             return ""
@@ -82,7 +82,7 @@ class SupervisedProcess:
         return self._start(now) if now >= self._next else ""
 
     def lines(self) -> list[str]:
-        """Return the lines it has printed since the last call, and a line about those left out."""
+        """Return the lines that the program has printed since the last call, and a line about those left out."""
         with self._lock:
             found, left_out, self._left_out = list(self._lines), self._left_out, 0
             self._lines.clear()
@@ -94,7 +94,7 @@ class SupervisedProcess:
             _kill(self._process)
 
     def close(self) -> None:
-        """End the program and everything it started: SIGTERM, and SIGKILL after END_TIMEOUT. Harmless when repeated."""
+        """End the program and everything it started: SIGTERM, then SIGKILL after END_TIMEOUT. May be called again."""
         self._closed = True
         if (process := self._process) is None:
             return
@@ -135,7 +135,7 @@ class SupervisedProcess:
         return ""
 
     def _ended(self, process: "subprocess.Popen[bytes]", now: float) -> str:
-        """Note the end of the process, and end the processes that it left behind."""
+        """Kill the processes that the ended one left behind, schedule the next start, and return how it ended."""
         self._process = None
         _kill(process)
         self._release(process)
@@ -160,7 +160,7 @@ class SupervisedProcess:
                         self._left_out += 1
 
     def _release(self, process: "subprocess.Popen[bytes]") -> None:
-        """Close the pipes after their reader has read to the end."""
+        """Wait for the process, and close its pipes after their reader has read to the end."""
         process.wait()
         if self._reader:
             self._reader.join(END_TIMEOUT)

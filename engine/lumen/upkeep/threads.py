@@ -1,4 +1,4 @@
-"""Threads that an exhibition can't do without: after a fault they are restarted, and given up with a report."""
+"""Threads that an exhibition can't do without: they are restarted after a fault, and reported once given up."""
 
 import logging
 import threading
@@ -12,15 +12,15 @@ from lumen.upkeep.drops import DropLog
 from lumen.upkeep.ratelimit import pause_after
 
 MAX_FAULTS = 5
-"""Faults within `FAULT_PERIOD` after which a thread is given up."""
+"""The number of faults within FAULT_PERIOD after which a thread is given up."""
 FAULT_PERIOD = 60.0
-"""Time in which faults are counted [s]."""
+"""The period in which faults are counted [s]."""
 FIRST_PAUSE = 0.05
-"""Pause before a thread restarts after its first fault [s]; it doubles with each further one."""
+"""The pause before a thread restarts after its first fault [s]; it doubles with each further fault."""
 WATCH_PERIOD = 1.0
-"""Time between two checks of the threads [s]."""
+"""The time between two checks of the threads [s]."""
 MAX_KINDS = 100
-"""Kinds of faults that are logged with their tracebacks."""
+"""The maximum number of kinds of faults that are logged with their tracebacks."""
 
 _log = logging.getLogger(__name__)
 _watched: "WeakSet[WatchedThread]" = WeakSet()
@@ -28,15 +28,17 @@ _changing = threading.Lock()
 
 
 class WatchedThread:
-    """A thread that runs its `work` until that returns, and again after a fault.
+    """A thread that calls `work` until it returns, and calls it again after a fault.
 
-    After `MAX_FAULTS` within a minute it is given up. `work` must be able to continue from where a fault left it.
+    After MAX_FAULTS within FAULT_PERIOD it is given up. `work` must be able to continue after a fault.
     """
 
     def __init__(self, name: str, work: Callable[[], None], *, vital: bool = False) -> None:
         self.name, self.vital, self.lost = name, vital, ""
-        """`lost` is why the thread was given up, empty if it was not."""
-        """`vital` is whether the robot must rest if the thread is given up, because no person could reach it then."""
+        """`vital` is true if the robot must rest once the thread is given up, because no person could then stop it.
+
+        `lost` is the reason why the thread was given up; empty if it was not.
+        """
         self._work = work
         self._ending = threading.Event()
         self._faults: deque[float] = deque(maxlen=MAX_FAULTS)
@@ -44,12 +46,12 @@ class WatchedThread:
 
     @property
     def current(self) -> bool:
-        """Whether the caller runs on this thread."""
+        """True if the caller runs on this thread."""
         return threading.current_thread() is self._thread
 
     @property
     def started(self) -> bool:
-        """Whether it has been started."""
+        """True if the thread was started at some time."""
         return self._thread is not None
 
     def start(self) -> None:
@@ -59,18 +61,21 @@ class WatchedThread:
         self._begin()
 
     def is_alive(self) -> bool:
-        """Return whether it is running."""
+        """Return True if the thread is running."""
         return self._thread is not None and self._thread.is_alive()
 
     def join(self, timeout: float | None = None) -> bool:
-        """Let it end, and wait for at most `timeout` [s]; return whether it has ended. It is not restarted."""
+        """Wait for the thread for at most `timeout` [s], None for no limit; return True if it has ended.
+
+        It is not restarted from now on. The thread itself does not wait.
+        """
         self._ending.set()
         if self._thread is not None and not self.current:
             self._thread.join(timeout)
         return not self.is_alive()
 
     def revive(self) -> None:
-        """Restart it if it died without finishing its work; called by a `ThreadWatch`."""
+        """Restart the thread if it died without finishing its work; called by a `ThreadWatch`."""
         if self.started and not self.is_alive() and not self._ending.is_set() and not self.lost:
             _log.error("the thread `%s` died and is being restarted", self.name)
             if self._again("it died"):
@@ -98,7 +103,7 @@ class WatchedThread:
                     return
 
     def _again(self, why: str) -> bool:
-        """Count a fault, and wait for the pause; return whether the thread may run again."""
+        """Count a fault and wait for the pause; return True if the thread may run again."""
         now = time.monotonic()
         self._faults.append(now)
         recent = sum(now - at < FAULT_PERIOD for at in self._faults)
@@ -117,14 +122,17 @@ def _all() -> list[WatchedThread]:
 
 
 class ThreadWatch:
-    """A watch over all watched threads of this process."""
+    """Restarts dead threads of this process, and reports those that were given up."""
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
         self._clock, self._next = clock, 0.0
         self._told: WeakSet[WatchedThread] = WeakSet(thread for thread in _all() if thread.lost)
 
     def tick(self) -> list[WatchedThread]:
-        """Restart dead threads; return those that were given up since the last call."""
+        """Every WATCH_PERIOD, restart dead threads and return those that were given up since the last time.
+
+        Calls in between return an empty list.
+        """
         if self._clock() < self._next:
             return []
         self._next = self._clock() + WATCH_PERIOD
@@ -137,9 +145,9 @@ class ThreadWatch:
 
 
 class MessageGuard:
-    """A context in which an internal error loses only the message that caused it.
+    """A context manager in which an error loses only the message that caused it; call it with the message's key.
 
-    The error is logged, the first of its kind with a traceback, and counted in `drops` under the message's key.
+    The error is counted in `drops` under that key, and the first of its kind is logged with a traceback.
     """
 
     def __init__(self, log: logging.Logger, what: str) -> None:
