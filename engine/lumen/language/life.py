@@ -39,9 +39,9 @@ class Glances:
     every: float
     """The length of the periods, each of which has one glance [s]."""
     yaw: float
-    """The greatest turn to either side [rad]."""
+    """The maximum turn to either side [rad]."""
     pitch: float
-    """The greatest turn up or down [rad]."""
+    """The maximum turn up or down [rad]."""
     hold: float = 1.0
     """The time before the head returns [s]."""
 

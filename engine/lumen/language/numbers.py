@@ -1,4 +1,4 @@
-"""Test for numbers as JSON, YAML and the expressions define them: a bool is not one, although it is an int in Python."""
+"""Test for numbers as JSON, YAML and the expressions define them: a bool is not a number, unlike in Python."""
 
 from math import isfinite
 from typing import TypeGuard

@@ -1,4 +1,4 @@
-"""The robot under physics."""
+"""The simulated robot, under physics."""
 
 from lumen.feature import BaseRow, Feature, PartRow, Phase, RobotOption, RobotRow, Section, Subcommand
 

@@ -13,25 +13,26 @@ from lumen.motion.gait.legs import sign as outward
 from lumen.motion.gait.parameters import scale_of
 
 BALANCE_GAIN = 0.05
-"""The ankles' correction for each unit of the torso's rate [rad per rad/s]: the toes press on the side of the fall."""
+"""The ankles' correction for each unit of the torso's rate [rad per rad/s]; the toes press on the side of the fall."""
 
 MAX_TRIM = 0.15
 _SMOOTHING = 0.3
 
 HIP_SAG, _SAG_SMOOTHING = 0.02, 0.8
-"""The sag of the hip of a leg that supports the robot alone [rad]: its servo lags under load and its gear has play.
-"""
+"""The sag of the hip of a leg that supports the robot alone [rad], since its servo lags and its gear has play."""
 
 LEAN, LEAN_RATE, LEAN_GAIN = 0.12, 0.1, 5.0
-"""The greatest forward lean by ankles and hips [rad], its greatest rate [rad/s], and its rate per metre of error [rad/s
-per m]; the last for legs as long as those that the paces were tuned with.
+"""The maximum forward lean by ankles and hips [rad], its maximum rate [rad/s], and its rate per metre [rad/s per m].
+
+The last is for each metre by which the weight is too far back, for legs as long as those that the paces were tuned
+with.
 """
 
 STANDING_AHEAD = 0.005
-"""The distance by which the weight should be farther ahead than in a walk while standing [m], for such legs."""
+"""The distance by which the weight is kept farther ahead than in a walk while standing [m], for legs of that length."""
 
 HEEL_MARGIN = 0.01
-"""The robot falls backwards if its DCM is nearer than this to the heels' edge [m], for such legs."""
+"""The distance of the DCM from the heels' edge below which the robot falls backwards [m], for legs of that length."""
 
 ARM_SWING, HIP_STRETCH = 3.0, 0.3
 """The swing of the arms up and back, and the stretch of the hips, against a fall [rad]."""
@@ -44,11 +45,11 @@ ARM_RETURN_TIME, HIP_RETURN_TIME = 1.0, 0.6
 
 
 class BalanceController:
-    """Corrects the joints' goals by the gyrometer, encoders and inertial unit.
+    """Corrects the joints' goals by the gyrometer, the encoders and the inertial unit.
 
-    `lifted` is the foot in the air, and `walking` is whether a walk shifts the weight itself; both hold for one `trim`.
-    `catching` is whether steps catch a fall. Call `falling.feel` before each `trim`. A walk keeps the weight `ahead` of
-    the ankles [m].
+    `ahead` is the distance at which a walk keeps the weight in front of the ankles [m]. Before each `trim`, call
+    `falling.feel` and set `lifted`, the foot in the air, and `walking`, which is true while a walk shifts the weight
+    itself; `trim` resets both. `catching` is true while steps catch a fall.
     """
 
     def __init__(self, motors: Motors, falling: FallingSense, legs: LegGeometry, roles: Roles, ahead: float) -> None:
@@ -75,7 +76,7 @@ class BalanceController:
         self.walking = self.catching = False
 
     def trim(self, gyro: tuple[float, float], *, standing: bool) -> JointVector:
-        """Return what to add to the joints' goals [rad] while the torso rolls and pitches at these rates [rad/s].
+        """Return the corrections of the joints' goals [rad] while the torso rolls and pitches at `gyro` [rad/s].
 
         The array is valid until the next call. Leaning and catching apply only to a robot that is `standing` on its
         feet.

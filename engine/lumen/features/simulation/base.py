@@ -1,4 +1,4 @@
-"""The interface of bases: legs, wheels or a mount under a simulated robot, made for the kind that its body has."""
+"""The interface of bases: legs, wheels or a mount under a simulated robot, as the kind in its body's roles requires."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -21,7 +21,7 @@ from lumen.robot.executor import Activity
 
 @dataclass(frozen=True)
 class BaseRequest:
-    """The parts that a base is made from. Only the base may move its world and motors."""
+    """The parts that a base is made from. Only the base may drive the joints of its legs or wheels."""
 
     world: World
     models: Path
@@ -31,11 +31,11 @@ class BaseRequest:
     imperfections: Imperfections
     hazards: Hazards
     stage: Stage | None
-    """The ground on which the robot may go; None if nothing bounds it."""
+    """The area in which the robot may move; None for no bounds."""
     free: Callable[[str], bool]
-    """Returns whether no command moves a joint and the joint has power."""
+    """A function that returns True if no command moves a joint and the joint has power."""
     hot: Callable[[], bool]
-    """Returns whether the motors should be spared."""
+    """A function that returns True if the motors are hot and should be spared."""
 
     @property
     def body(self) -> Body:
@@ -44,7 +44,7 @@ class BaseRequest:
 
 
 class RobotBase(Protocol):
-    """Walks or drives, keeps the robot upright as far as possible, and estimates its position."""
+    """The part under a robot that walks or drives, keeps the robot upright if possible, and estimates its position."""
 
     @property
     def whereabouts(self) -> Whereabouts | None:
@@ -52,7 +52,7 @@ class RobotBase(Protocol):
 
     @property
     def catching(self) -> bool:
-        """Whether the base is catching a fall."""
+        """True if the base is catching a fall."""
 
     @property
     def soles(self) -> Soles:
@@ -62,16 +62,17 @@ class RobotBase(Protocol):
         """Begin a walk and return its activity. Raises RobotError, and moves nothing, if it must not begin."""
 
     def steady(self, now: float, *, standing: bool, upright: bool) -> JointVector:
-        """Return what to add to the joints' goals [rad] in this control period. Called only while the motors are on.
+        """Return the corrections of the joints' goals [rad] for this control period.
 
-        `upright` is whether the robot intends to be on its feet, `standing` whether it is.
+        It is called only while the motors are on. `upright` is true if the robot intends to be on its feet, `standing`
+        if it is.
         """
 
     def relax(self) -> None:
-        """Spend a control period with the motors off."""
+        """Spend a control period with the motors off; called instead of `steady`."""
 
     def lose(self, posture: str) -> None:
-        """Note that the robot is down, in that posture or leaving it; an empty posture means that it has fallen."""
+        """Widen the estimate of the position: the robot is in that posture or leaving it; empty if it has fallen."""
 
     def keep(self, heading: float) -> None:
-        """Note that the robot stands, with this heading by the gyrometer [rad]."""
+        """Inform the estimate that the robot stands, with this heading by the gyrometer [rad]."""

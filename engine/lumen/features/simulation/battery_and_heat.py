@@ -15,12 +15,14 @@ IDLE_POWER = 30.0
 """The power of computer and sensors [W]: a charge lasts a good hour and a half of standing and talking."""
 
 CHARGING_POWER = 50.0
-"""The power into the battery while the charger is in [W]: an empty battery is full after an hour of rest. Chosen, not
-measured. The charger also powers the robot; motors that need more than it gives draw the rest from the battery.
+"""The power into the battery while the charger is in [W]: an empty battery is full after an hour of rest.
+
+Chosen, not measured. The charger also powers the robot; motors that need more than it gives draw the rest from the
+battery.
 """
 
 STALL_POWER = 6.0
-"""The power of a motor at its greatest torque without moving [W]."""
+"""The power of a motor at its maximum torque without moving [W]."""
 
 BATTERY_LOW, BATTERY_RECOVERED, BATTERY_USED = 20, 25, 95
 """The charges [%] at which the robot raises `battery.low`, may raise it again, and may raise `battery.full` again."""
@@ -29,15 +31,17 @@ MOTOR_HOT, MOTOR_COOLED = 75.0, 70.0
 """The temperatures [degrees Celsius] at which the robot raises `motors.hot`, and may raise it again."""
 
 MOTOR_AMBIENT, MOTOR_RISE, MOTOR_TIME_CONSTANT = 38.0, 300.0, 600.0
-"""The motors' first temperature [degrees Celsius], their rise at the greatest torque, and the time constant [s].
+"""The motors' first temperature [degrees Celsius], their rise at the maximum torque, and the time constant [s].
+
 Chosen, not measured.
 """
 
 
 class BatteryAndHeat:
-    """Integrates the motors' use of energy and their heat; `temperatures` [degrees Celsius] are in the joints' order.
+    """Integrates the energy that the robot uses, and the heat of its motors.
 
-    `plugged` is whether the charger is in.
+    `efforts` are the joints' maximum torques [N m], and `charge` is the battery's first charge, 0 to 1. `temperatures`
+    [degrees Celsius] are in the joints' order. `plugged` is true while the charger is in.
     """
 
     def __init__(self, names: Sequence[str], efforts: Sequence[float], charge: float = 1.0) -> None:
@@ -61,21 +65,21 @@ class BatteryAndHeat:
 
     @property
     def charging(self) -> bool:
-        """Whether the charger is in and the battery not full."""
+        """True if the charger is in and the battery not full."""
         return self.plugged and self._energy < BATTERY_CAPACITY
 
     @property
     def empty(self) -> bool:
-        """Whether no energy is left for the motors."""
+        """True if no energy is left for the motors."""
         return self._energy <= 0.0
 
     @property
     def hot(self) -> bool:
-        """Whether a motor was hot and has not cooled down since."""
+        """True if a motor was hot and has not cooled down since."""
         return bool(self._hot)
 
     def live(self, torques: NDArray[np.float64], speeds: NDArray[np.float64], dt: float, now: float) -> list[Event]:
-        """Advance by `dt` [s] with these torques [N m] and speeds [rad/s]; return the events."""
+        """Advance by `dt` [s] with these torques [N m] and speeds [rad/s]; return events of battery and motors."""
         load = np.square(torques / self._efforts)
         power = IDLE_POWER + STALL_POWER * float(load.sum()) + float(np.abs(torques * speeds).sum())
         given = IDLE_POWER + CHARGING_POWER if self.plugged else 0.0

@@ -1,4 +1,4 @@
-"""A base with two legs: the robot walks, balances and steps to catch a fall."""
+"""A base with two legs, on which the robot walks, balances and takes steps that catch a fall."""
 
 from lumen.features.simulation.balance import BalanceController
 from lumen.features.simulation.base import BaseRequest
@@ -54,26 +54,26 @@ class Biped:
 
     @property
     def whereabouts(self) -> Whereabouts:
-        """Return the robot's estimate of its position and how far it may be wrong."""
+        """The robot's estimate of its position, and its possible error."""
         return self.odometry.whereabouts
 
     @property
     def catching(self) -> bool:
-        """Return whether the robot is taking steps to catch a fall."""
+        """True if the robot is taking steps to catch a fall."""
         return self.catcher.active
 
     @property
     def soles(self) -> Soles:
-        """Return the half length and half width of each sole [m], by its site."""
+        """The half length and half width of each sole [m], by its site."""
         toe, heel, outer, inner = self.odometry.legs.sole_size
         return dict.fromkeys(self._soles, ((toe + heel) / 2, (outer + inner) / 2))
 
     def walk(self, command: Walk | Move, now: float) -> Activity:
-        """Begin to walk, or change the speed of the present walk."""
+        """Begin to walk, or change the speed of the present walk. Raises RobotError if the walk must not begin."""
         return self.walker.begin(command, now)
 
     def steady(self, now: float, *, standing: bool, upright: bool) -> JointVector:
-        """Return the balance's corrections to the joints' goals [rad]; advance the catching of a fall."""
+        """Return the balance's corrections of the joints' goals [rad]; advance the steps that catch a fall."""
         self.falling.feel()
         self.catcher.advance(now, standing=standing)
         return self.balance.trim(self._sensors.gyro if upright else (0.0, 0.0), standing=standing)
@@ -86,5 +86,5 @@ class Biped:
         self.odometry.lose(posture)
 
     def keep(self, heading: float) -> None:
-        """Tell the odometry that the robot stands with this heading [rad]."""
+        """Inform the odometry that the robot stands with this heading [rad]."""
         self.odometry.keep(heading)

@@ -12,31 +12,32 @@ from lumen.motion.gait.parameters import scale_of, time_scale_of
 from lumen.motion.gait.swing import CapturePoint, hold_level, landing, smooth
 
 STEP_TIME, STEP_BACK_TIME = 0.17, 0.2
-"""The duration of a step forward or to the side, and of one backwards [s], for legs as long as those that it was tuned
-with.
+"""The durations of a step forward or to the side, and of a step back [s].
+
+They are for legs as long as those that the step was tuned with.
 """
 
 STEP_HEIGHT = 0.03
-"""The height to which a foot is lifted that steps forward or to the side [m], for such legs."""
+"""The height to which a foot is lifted in a step forward or to the side [m], for such legs."""
 
 TOES_PRESS, NEAR_TOES = 0.2, 0.05
-"""The most that the supporting ankle presses its toes down during the step [rad], and a distance [m]. It presses fully
-while the DCM is at the feet's front edge, and not at all if the DCM is farther behind the edge than that distance: the
-sole would tip, and the body with it, while the other foot is in the air. It does not press either if the DCM is as far
-beyond the edge: pressed toes would only make a certain fall harder.
+"""The maximum angle by which the supporting ankle presses its toes down during the step [rad], and a distance [m].
+
+The toes press fully while the DCM is at the feet's front edge. They do not press if the DCM is farther behind the edge
+than that distance: the sole would tip, and the body with it, while the other foot is in the air. Nor do they if the DCM
+is as far beyond the edge: they would only make a certain fall harder.
 """
 
 KNEE_LIFT, LIFTS_EARLY = 0.25, 0.7
-"""The bend of the knee of a foot that steps back [rad], and the exponent of time: below 1 it bends most before
-halfway.
-"""
+"""The bend of the knee of a foot that steps back [rad], and the exponent of its time: below 1, it comes early."""
 
 KNEE_GIVES, GIVES_LATE = 0.8, 0.15
 """The yielding of the other knee when a foot steps back [rad], and the share of the step at which it begins."""
 
 UPRIGHT_GAIN, UPRIGHT_LEAN = 0.8, 0.45
-"""The gain and the target of the torso's forward lean [rad], held by the supporting hip. Thighs hardly move backwards
-(0.48 rad), so a foot can step back only if the torso leans forward.
+"""The gain and the target of the torso's forward lean [rad], which the supporting hip controls.
+
+Thighs hardly move backwards (0.48 rad), so a foot can step back only if the torso leans forward.
 """
 
 _LANDS, _LOOK_AHEAD = 0.9, 0.02
@@ -46,9 +47,9 @@ _HIP, _KNEE, _ANKLE = 2, 3, 4
 
 
 class CatchStep:
-    """A step of the foot `side` to where the body falls; `sent` are the angles last sent to the motors.
+    """A step of the foot `side` to the place that the body falls towards. It begins at `now` [s].
 
-    Call `falling.feel` before each `advance`.
+    `sent` are the angles last sent to the motors [rad]. Call `falling.feel` before each `advance`.
     """
 
     def __init__(
@@ -71,7 +72,7 @@ class CatchStep:
         self._start = falling.soles[self._swings] - falling.soles[self._rests]
 
     def advance(self, now: float, measured: Mapping[str, float]) -> dict[str, float]:
-        """Return the next angles of the legs' joints [rad]; `measured` are the present ones."""
+        """Return the angles of the legs' joints for `now` [s] in [rad]; `measured` are the present ones."""
         gone = now - self._begin
         part = min(1.0, (gone + _LOOK_AHEAD) / self._seconds)
         falling, left = self._falling, max(self._seconds - gone, 0.0)
@@ -88,7 +89,7 @@ class CatchStep:
         return joints
 
     def over(self, now: float) -> bool:
-        """Return whether the foot should have landed."""
+        """Return True if the foot should have landed by `now` [s]."""
         return now - self._begin >= self._seconds
 
     def _step_back(self, part: float, goal: CapturePoint, measured: Mapping[str, float]) -> dict[str, float]:

@@ -1,4 +1,4 @@
-"""Steps that catch a fall which ankles, hips and arms can't stop; then the robot continues what it did."""
+"""Steps that catch a fall too strong for ankles, hips and arms; then the robot continues its activity."""
 
 from collections.abc import Callable, Mapping
 
@@ -13,13 +13,17 @@ from lumen.motion.gait.parameters import scale_of, time_scale_of
 from lumen.motion.gait.swing import smooth
 
 BEYOND_TOES, BEYOND_HEELS = -0.01, -0.008
-"""A step begins when the DCM is this far beyond the feet's front or rear edge [m], for legs as long as those that it
-was tuned with. Sideways there is no step, since a foot can't cross the other.
+"""The distances of the DCM beyond the feet's front and rear edge at which a step begins [m].
+
+They are for legs as long as those that the step was tuned with. No step is taken sideways, since a foot can't cross the
+other.
 """
 
 ASIDE = 0.008
-"""A backward fall is caught only if the DCM is also this far to the side [m]. In a straight backward fall both feet
-stay loaded, and arms and hips help more than a foot that does not leave the ground.
+"""The distance of the DCM to the side beyond which a backward fall is caught [m].
+
+In a straight backward fall both feet stay loaded, and arms and hips help more than a foot that does not leave the
+ground.
 """
 
 BRACE_TIME, CALM_TIME, RETURN_TIME = 0.5, 0.3, 1.0
@@ -29,14 +33,14 @@ NEXT_STEP = 0.2
 """The pause after a step before the next may begin [s]."""
 
 MOST_STEPS = 4
-"""The number of steps after which a fall is not caught any more."""
+"""The maximum number of steps towards one fall."""
 
 
 class FallCatcher:
-    """Controls the legs while it catches a fall; their goals are kept for afterwards.
+    """Controls the legs while it catches a fall; the motors keep the legs' earlier goals.
 
     It takes one or more steps towards the fall, rests with bent legs, and steps until the feet are side by side again.
-    A walk then continues from there; for any other activity the legs return slowly.
+    A walk then continues from there; for any other activity the legs return slowly to their goals.
     """
 
     def __init__(
@@ -65,7 +69,7 @@ class FallCatcher:
 
     @property
     def active(self) -> bool:
-        """Whether a fall is being caught."""
+        """True if a fall is being caught."""
         return self._does is not None
 
     def advance(self, now: float, *, standing: bool) -> None:

@@ -1,4 +1,4 @@
-"""`lumen play MOTION`: a motion on the simulated robot, from the posture it begins in."""
+"""`lumen play MOTION`: play a motion on the simulated robot, from the posture in which it begins."""
 
 import argparse
 import sys
@@ -66,8 +66,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Play the motion; return the exit code, 1 if the robot fell or missed a goal. Raises UsageError and
-    ProjectError.
+    """Play the motion; return the exit code, 1 if the robot fell or missed a goal, else 0.
+
+    Raises UsageError if the robot can't play it, and ProjectError if a file that it needs has errors.
     """
     root = shown_project(options.project)
     use_model(options.model, [root])
@@ -88,7 +89,7 @@ def run(options: argparse.Namespace) -> int:
 def _played(
     project: Project, motion: MotionDefinition, speed: str, video: Path | None, size: tuple[int, int]
 ) -> dict[str, Any]:
-    """Play the motion and return the result. Raises UsageError if the robot can't."""
+    """Play the motion and return the object of `--format json`. Raises UsageError if the robot can't play it."""
     player = _Player(project, speed, video, size)
     print(f"{project.robot} plays `{motion.name}` ({motion.duration:.1f} s) at {speed} × real time")
     late = _slowed(motion, project.body)
@@ -132,9 +133,10 @@ class _Player:
         self._film = Film(video, self.robot, "close", size=size) if video else None
 
     def perform(self, command: RobotCommand, tell: ProgressListener, duration: float = 0.0) -> str:
-        """Perform a command, about `duration` [s] long, to its end; return a fall or the joint that missed its goal.
+        """Perform a command, about `duration` [s] long, to its end; return the trouble in words, empty if it went well.
 
-        Raises UsageError, with the reason, if the robot can't perform it.
+        Trouble is a fall or a joint that missed its goal. `tell` receives the progress. Raises UsageError, with the
+        reason, if the robot can't perform the command.
         """
         self.robot.start("play", command)
         began = self._clock.now()
@@ -159,7 +161,7 @@ class _Player:
 
 
 def _slowed(motion: MotionDefinition, body: Body) -> list[str]:
-    """Return a line for each joint that can't keep up with the motion, at its worst key."""
+    """Return a line about each joint that can't keep up with the motion, at its worst key."""
     worst = {excess.joint: excess for excess in sorted(overspeed(motion, body), key=lambda e: e.value / e.limit)}
     return [
         f"`{joint}` comes late: to get there by {excess.key.time:.2f} s it would have to move at {excess.value:.3g} "
@@ -169,7 +171,10 @@ def _slowed(motion: MotionDefinition, body: Body) -> list[str]:
 
 
 def _motion(found: ProjectDraft, name: str, options: argparse.Namespace) -> MotionDefinition:
-    """Return the motion of that name or in that file; errors in the project's other files don't matter."""
+    """Return the motion of that name or in that file; errors in the project's other files are ignored.
+
+    Raises UsageError if there is no such motion, ProjectError if its file has errors.
+    """
     path = Path(name)
     foreign = endings("motion")
     if path.suffix.lower() in foreign:
@@ -192,7 +197,7 @@ def _motion(found: ProjectDraft, name: str, options: argparse.Namespace) -> Moti
 
 
 def _foreign(body: Body, path: Path, options: argparse.Namespace) -> MotionDefinition:
-    """Return the motion in another tool's file; print what could not be converted."""
+    """Return the motion in another tool's file; print findings about parts that were not converted."""
     try:
         data, diagnostics = read_gesture(
             str(path), foreign_content(path), body, timeline=options.timeline, retime=options.retime

@@ -12,12 +12,11 @@ Soles = Mapping[str, tuple[float, float]]
 NO_SOLES: Soles = {}
 
 SHADOW_FADES = 0.05
-"""The height of a sole above the ground from which its spot is invisible [m]."""
+"""The height of a sole above the ground at which its spot becomes invisible [m]."""
 
 LAYERS, LAYER_OPACITY = (0.75, 1.0, 1.3, 1.65), 0.13
 BEYOND_SOLE, VISITOR_SIZE = (0.018, 0.015), (0.17, 0.2)
-"""A spot's extent beyond half a sole, ahead and sideways, and half the length and width of a visitor's [m].
-"""
+"""The extent of a spot beyond half a sole, ahead and sideways, and half the length and width of a visitor's [m]."""
 
 _THICKNESS = 4e-4
 _GROUND = np.array([1, 0, 0, 0, 0, 0], dtype=np.uint8)

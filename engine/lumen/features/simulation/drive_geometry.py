@@ -11,10 +11,13 @@ from lumen.features.simulation.world import World
 from lumen.motion.gait.pendulum import GRAVITY
 
 TIPPING_SHARE = 0.25
-"""The robot uses this share of the acceleration that would tip it over, or that its motors can reach."""
+"""The share of the maximum acceleration that the robot uses.
+
+Beyond the maximum it would tip over, or its motors would be too weak.
+"""
 
 ON_THE_GROUND = 0.01
-"""Geoms up to this height above the wheels' lowest points carry the robot [m]."""
+"""The height above the wheels' lowest points up to which geoms carry the robot [m]."""
 
 
 _ROUND = [
@@ -23,7 +26,7 @@ _ROUND = [
 
 
 class DriveGeometry(NamedTuple):
-    """Two wheels side by side."""
+    """The dimensions and limits of two driven wheels side by side."""
 
     angles: NDArray[np.intp]
     """The indexes of the wheels' joints in MuJoCo's `qpos`, left first."""
@@ -36,13 +39,13 @@ class DriveGeometry(NamedTuple):
     track: float
     """The distance between the wheels [m]."""
     fastest: float
-    """The greatest speed of rolling [m/s]."""
+    """The maximum speed of rolling [m/s]."""
     acceleration: float
     """The acceleration and deceleration along the way [m/s^2]."""
     spin: float
     """The angular acceleration [rad/s^2]."""
     reach: float
-    """The greatest distance of what carries the robot from the wheels' middle [m]."""
+    """The maximum distance of the wheels and casters from the middle between the wheels [m]."""
 
 
 def read_drive(world: World) -> DriveGeometry:
@@ -101,7 +104,10 @@ def _radius(model: mujoco.MjModel, link: int) -> float:
 
 
 def _carried(world: World, radius: float, axle: float) -> NDArray[np.float64]:
-    """Return the places (points, 2) [m] in the torso's frame of wheels and of casters that reach as low."""
+    """Return the positions of the robot's geoms that reach down as far as its wheels, such as casters.
+
+    They are points in the torso's frame, Shape (points, 2) [m].
+    """
     model, data, torso = world.model, world.data, world.data.body(world.torso)
     own = (model.geom_contype | model.geom_conaffinity) & (
         model.body_rootid[model.geom_bodyid] == model.body_rootid[world.torso]

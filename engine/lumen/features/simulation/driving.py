@@ -1,4 +1,4 @@
-"""Driving on two wheels side by side, to a place or continuously: the wheels' speeds and when to brake."""
+"""Driving on two wheels side by side, to a place or at a constant speed: the wheels' speeds and the time to brake."""
 
 from collections.abc import Callable
 from math import atan2, copysign, hypot, sqrt
@@ -20,23 +20,22 @@ BACKS_UP = 0.6
 """The robot reaches a place behind it in reverse if it is no farther than this [m]."""
 
 STEERING, CREEPING, CREEPING_TURN = 2.0, 0.03, 0.1
-"""The rate of steering back to the path [1/s], and the least speeds before the end of a drive [m/s] and a turn [rad/s].
-"""
+"""The rate of steering back to the path [1/s], and the minimum speeds of a drive [m/s] and of a turn [rad/s]."""
 
 BRAKES_EARLY = 0.85
-"""The share of the greatest braking speed that is used: motors react late."""
+"""The share of the maximum braking speed that is used: motors react late."""
 
 MOTORS_LATE = 0.06
 """The time for which the wheels keep their speed before a command acts [s]."""
 
 STUCK_TIME = 3.0
-"""A robot that has not moved for this long is stuck [s]."""
+"""The time without a movement after which a robot is stuck [s]."""
 
 
 class Drive:
     """Turns the wheels within the base's limits of speed and acceleration; without a call of `steer` it brakes.
 
-    `limit` is the greatest speed straight ahead and around; hot motors halve it.
+    The argument `limit` has the maximum speeds ahead [m/s] and around [rad/s]; hot motors halve them.
     """
 
     def __init__(self, world: World, geometry: DriveGeometry, limit: Velocity, hot: Callable[[], bool]) -> None:
@@ -46,13 +45,13 @@ class Drive:
 
     @property
     def limit(self) -> Velocity:
-        """The greatest speeds straight ahead [m/s] and around [rad/s]: halved while motors are hot."""
+        """The maximum speeds straight ahead [m/s] and around [rad/s]: halved while motors are hot."""
         part = 0.5 if self._hot() else 1.0
         return Velocity(part * self._limit.x, 0.0, part * self._limit.theta)
 
     @property
     def still(self) -> bool:
-        """Whether the robot neither drives nor turns."""
+        """True if the robot neither drives nor turns."""
         return self.speed == 0.0 and self.turning == 0.0
 
     def steer(self, speed: float, turning: float) -> None:
@@ -88,8 +87,9 @@ class DriveActivity:
         self._cancelled = False
 
     def advance(self, now: float) -> bool:
-        """Steer until the end; return True once the robot has arrived or stopped. Raises RobotFailedError if a hazard
-        stopped it.
+        """Steer for one period until `now` [s]; return True once the robot has arrived or stopped.
+
+        Raises RobotFailedError if a hazard stopped it or it did not reach its goal.
         """
         self._now = now
         if not self._cancelled and now >= self._look:
@@ -113,7 +113,7 @@ class DriveActivity:
         raise NotImplementedError
 
     def _leaves(self) -> str:
-        """Return why the robot must not reach the place where braking now would stop it; empty if it may."""
+        """Return the reason if the robot must not reach the place where braking now would stop it; empty if it may."""
         speed, here = self.drive.speed, self.odometry.here
         late = HAZARD_CHECK_PERIOD + MOTORS_LATE
         comes = speed * late + speed * abs(speed) / (2 * self.drive.geometry.acceleration)
@@ -144,8 +144,9 @@ class DriveOn(DriveActivity):
 
 
 class DriveTo(DriveActivity):
-    """A drive to a place: turn towards it, drive there, then turn to the goal's heading; backwards to a near place
-    behind.
+    """A drive to a place: turn towards it, drive there, and turn to the goal's heading.
+
+    The robot drives backwards to a near place behind it.
     """
 
     def __init__(self, drive: Drive, odometry: WheelOdometry, hazards: Hazards, goal: Pose, now: float) -> None:
@@ -206,7 +207,10 @@ class DriveTo(DriveActivity):
 
 
 def _braking(left: float, most: float, rate: float, least: float) -> float:
-    """Return the greatest speed from which the robot can still stop within `left`, between `least` and `most`."""
+    """Return the maximum speed from which the robot can stop within the distance `left`, between `least` and `most`.
+
+    `rate` is the deceleration. All of them are lengths [m] or all angles [rad].
+    """
     return min(most, max(least, BRAKES_EARLY * sqrt(2 * rate * left)))
 
 

@@ -1,4 +1,4 @@
-"""The NAO, or another biped, as an entity of dm_control's composer, for your own worlds and tasks."""
+"""The NAO, or another biped, as an entity of dm_control's composer, for users' own worlds and tasks."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -28,11 +28,11 @@ def sole_sensors(body: Body) -> tuple[str, ...]:
 
 
 class NaoObservables(legacy_base.WalkerObservables):  # type: ignore[misc]
-    """The observables of a NAO or another biped besides those of any Walker; `joints_pos` and `joints_vel` are in the
-    body's order. Observables of missing sensors are left out.
+    """The observables of a NAO or another biped, in addition to those of any Walker.
 
-    They have no noise: `lumen.features.simulation.imperfections` has the errors of real encoders and gyrometers, to be
-    used as the `corruptor` of an observable.
+    `joints_pos` and `joints_vel` are in the body's order. Observables of missing sensors are left out. They have no
+    noise: `lumen.features.simulation.imperfections` has the errors of real encoders and gyrometers, to be used as the
+    `corruptor` of an observable.
     """
 
     def __init__(self, entity: composer.Entity) -> None:
@@ -43,7 +43,7 @@ class NaoObservables(legacy_base.WalkerObservables):  # type: ignore[misc]
 
     @composer.observable
     def soles(self) -> observable.MJCFFeature:
-        """The force on each of the sensors under the soles [N], in the order of `sole_sensors`."""
+        """The force on each sensor under the soles [N], in the order of `sole_sensors`."""
         return observable.MJCFFeature("sensordata", self._soles())
 
     @composer.observable
@@ -63,7 +63,7 @@ class NaoObservables(legacy_base.WalkerObservables):  # type: ignore[misc]
 
     @composer.observable
     def camera_bottom(self) -> observable.Observable:
-        """The image of the other camera, if the model has one."""
+        """The image of the model's second camera, Shape (height, width, 3); Shape (0, 0, 3) if it has none."""
         return self._camera(1)
 
     @property
@@ -89,10 +89,10 @@ class NaoObservables(legacy_base.WalkerObservables):  # type: ignore[misc]
 
 
 class Nao(legacy_base.Walker):  # type: ignore[misc]  # dm_control has no types
-    """The robot alone, a legged Walker: body, motors, sensors and cameras; no controller and no hall.
+    """The robot alone, a legged Walker: body, motors, sensors and cameras, without a controller or a hall.
 
-    `body` and `models` come from a project (`project.body`, the folder of its MJCF); `name` distinguishes several
-    robots. Attach it with `nao.create_root_joints(arena.attach(nao))`, or attach its `mjcf_model` to plain MJCF. An
+    `body` is `project.body` of a project, and `models` the folder of its MJCF; `name` distinguishes several robots.
+    Attach the robot with `nao.create_root_joints(arena.attach(nao))`, or attach its `mjcf_model` to plain MJCF. An
     action is an angle for each of the `actuators` [rad], an opening for hands (0..1). A task that begins an episode
     with `reinitialize_pose` begins in the posture Stand, or as `initializer` decides. Raises RobotError if the model is
     unusable.
@@ -133,8 +133,9 @@ class Nao(legacy_base.Walker):  # type: ignore[misc]  # dm_control has no types
 
     @property
     def actuators(self) -> list[mjcf.Element]:
-        """The motors in the body's order, controlled by angles [rad] and openings; a joint that shares a motor has
-        none.
+        """The motors in the body's order, controlled by angles [rad; hands 0..1].
+
+        A joint that shares a motor has none.
         """
         return self._named("actuator", [name for name in self.body.joints if name not in self.body.shared])
 
@@ -168,12 +169,13 @@ class Nao(legacy_base.Walker):  # type: ignore[misc]  # dm_control has no types
 
     @property
     def upright_pose(self) -> base.WalkerPose:
-        """The posture Stand, soles on the ground."""
+        """The pose of the posture Stand, with the soles on the ground."""
         return self.pose("Stand")
 
     def take(self, physics: mjcf.Physics, posture: str) -> None:
-        """Put the robot upright into that posture, soles on the ground, and make the motors hold it; use it to begin an
-        episode.
+        """Put the robot into that posture, upright with its soles on the ground, and make the motors hold it.
+
+        Use it to begin an episode.
         """
         qpos, xpos, xquat = self.pose(posture)
         self.configure_joints(physics, qpos)
@@ -182,12 +184,12 @@ class Nao(legacy_base.Walker):  # type: ignore[misc]  # dm_control has no types
         physics.bind(self.actuators).ctrl = self.action_of(posture)
 
     def action_of(self, posture: str) -> np.ndarray:
-        """Return the action that holds that posture, in the order of `actuators`."""
+        """Return the action that holds that posture [rad; hands 0..1], in the order of `actuators`."""
         angles = self.body.postures[posture]
         return np.array([angle for name, angle in angles.items() if name not in self.body.shared])
 
     def apply_action(self, physics: mjcf.Physics, action: np.ndarray, random_state: np.random.RandomState) -> None:
-        """Send the action to the motors and remember it."""
+        """Send the action to the motors, and keep it as `prev_action`."""
         super().apply_action(physics, action, random_state)
         self._prev_action[:] = action
 
@@ -201,8 +203,9 @@ class Nao(legacy_base.Walker):  # type: ignore[misc]  # dm_control has no types
         return (float(physics.bind(self.root_body).xmat[-1]) - 1.0) / 2.0
 
     def pose(self, posture: str) -> base.WalkerPose:
-        """Return the angles of all joints of the model in that posture, coupled ones included, and the torso's
-        position.
+        """Return the angles of the model's joints in that posture, coupled ones included, and the torso's position.
+
+        The position has the lowest sole at height 0.
         """
         if posture not in self._taken:
             root = alone(self.body, self._models)  # self may be attached to a world by now

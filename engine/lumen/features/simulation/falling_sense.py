@@ -1,4 +1,4 @@
-"""The robot's own model of its weight, and the direction in which it is falling, estimated from its own sensors."""
+"""The robot's own estimate of its centre of mass, and of the direction in which it is falling, from its own sensors."""
 
 from collections.abc import Mapping
 from math import hypot, sqrt
@@ -20,7 +20,10 @@ from lumen.project.packaged_models import mjcf_path
 
 
 class MassModel:
-    """The robot's model without a world, for computing centres of mass."""
+    """The robot's model without a world, for computing centres of mass.
+
+    Raises RobotModelError if the MJCF is invalid.
+    """
 
     def __init__(self, body: Body, models: Path) -> None:
         try:
@@ -44,10 +47,9 @@ class MassModel:
         self._soles = np.array([self.model.site(name).id for name in soles], np.intp)
 
     def pose(self, angles: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Return the centre of mass (3,) and the points of both soles below the ankles (2, 3) [m], in the torso's
-        frame.
+        """Return the centre of mass (3,) and the points of both soles below the ankles (2, 3).
 
-        `angles` are those of all joints in the body's order [rad].
+        Both are in the torso's frame [m]. `angles` are those of all joints in the body's order [rad].
         """
         self._data.qpos[self._order] = angles
         mujoco.mj_kinematics(self.model, self._data)
@@ -57,8 +59,9 @@ class MassModel:
         )
 
     def centre_of_mass(self, angles: Mapping[str, float]) -> NDArray[np.float64]:
-        """Return the centre of mass (3,) [m] in the torso's frame; joints not in `angles` [rad] keep their last
-        value.
+        """Return the centre of mass (3,) in the torso's frame [m].
+
+        Joints that are not in `angles` [rad] keep their last value.
         """
         for name, angle in angles.items():
             self._data.qpos[self._places[name]] = angle
@@ -76,17 +79,19 @@ class MassModel:
 
 _SMOOTHING = 0.65
 _LOWEST = 0.15
-"""The least height of the centre of mass that is assumed [m], for legs as long as those that the paces were tuned with.
+"""The minimum height of the centre of mass that is assumed [m].
+
+It is for legs as long as those that the paces were tuned with.
 """
 
 
 class FallingSense:
     """The centre of mass and its divergent component of motion (DCM), as seen from the feet.
 
-    Axes are level with the ground: forward along the torso's heading, left, up [m]. The sources are encoders, the
-    inertial unit and the published masses; a load or differences in build are unknown to it. The DCM is the point where
-    the weight would have to rest for the body to come to a halt there: the capture point of Pratt and others, "Capture
-    point: a step toward humanoid push recovery", 2006. In arrays with two rows the first is the left foot's.
+    Axes are level with the ground: forward along the torso's heading, left, up [m]. The estimate uses the encoders, the
+    inertial unit and the published masses, so a load or a difference in build makes it wrong. The DCM is the point
+    where the weight would have to rest for the body to come to a halt there: the capture point of Pratt and others,
+    "Capture point: a step toward humanoid push recovery", 2006. In arrays with two rows the first is the left foot's.
     """
 
     def __init__(self, sensors: BodySensors, mass_model: MassModel, legs: LegGeometry) -> None:
@@ -115,13 +120,14 @@ class FallingSense:
 
     @property
     def behind_heels(self) -> float:
-        """The distance of the DCM behind the rear edge of the feet [m], negative above them."""
+        """The distance of the DCM behind the rear edge of the feet [m]; negative above or in front of them."""
         return -self._sole[1] - max(self._left[0], self._right[0])
 
     @property
     def beyond(self) -> tuple[float, float, float, float]:
-        """The distances of the DCM beyond the front, rear, left and right edge of both feet together [m], negative
-        inside.
+        """The distances of the DCM beyond the front, rear, left and right edge of both feet together [m].
+
+        They are negative inside.
         """
         toe, heel, outer, inner = self._sole
         (left_x, left_y), (right_x, right_y) = self._left, self._right

@@ -1,4 +1,4 @@
-"""A base that is mounted in its place."""
+"""A base that is mounted in one place."""
 
 import numpy as np
 

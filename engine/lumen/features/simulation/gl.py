@@ -1,4 +1,4 @@
-"""When imported, chooses the OpenGL library for drawing without a screen; import it before mujoco if possible."""
+"""Choose the OpenGL library for drawing without a screen, on import, which should precede that of mujoco."""
 
 import ctypes
 import importlib
@@ -24,7 +24,7 @@ def _loads(library: str) -> bool:
 
 
 def _there(backend: str) -> bool:
-    """Return whether the backend's libraries load: for EGL all of them, for OSMesa any version."""
+    """Return True if the backend's libraries load: for EGL all of them, for OSMesa any version."""
     return (all if backend == "egl" else any)(_loads(library) for library in _LIBRARIES[backend])
 
 
@@ -34,10 +34,10 @@ def choose() -> str:
 
 
 def _settle() -> tuple[str, str]:
-    """Choose a backend, the user's if one is set; return it and the reason if it can't draw.
+    """Choose a backend, the user's in MUJOCO_GL if set; return it, and the reason if the user's can't draw.
 
-    If a backend that the environment requests is missing, only the physics works, without pictures. If mujoco was
-    imported before, its choice is repeated.
+    In that case the backend is `disable`: only the physics works. If mujoco was imported before, its own choice is made
+    again.
     """
     wanted = os.environ.get("MUJOCO_GL", "").strip().lower()
     late = not wanted and sys.modules.get("mujoco.rendering.classic.gl_context")
@@ -52,7 +52,10 @@ def _settle() -> tuple[str, str]:
 
 
 def _fault(backend: str) -> str:
-    """Return why mujoco and dm_control can't be imported with that backend; empty if they can, or are not installed."""
+    """Return the reason why mujoco and dm_control can't be imported with that backend.
+
+    It is empty if they can be, or if they are not installed.
+    """
     screen = os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY") or sys.platform != "linux"
     if backend in _WITH_SCREEN and not screen:
         return f"MUJOCO_GL={backend} draws on a screen, but this machine has none: {_REMEDY}"
@@ -77,7 +80,7 @@ BACKEND, _WHY = _settle()
 
 
 def missing() -> str | None:
-    """Return why nothing can be drawn and what to do about it; None if drawing works."""
+    """Return the reason why nothing can be drawn, with the remedy; None if drawing works."""
     if _WHY:
         return _WHY
     if BACKEND in _OFF:

@@ -31,7 +31,7 @@ class TactileSensors:
         self._sites = {name: site for name, site in sites.items() if site >= 0}
 
     def pressed(self) -> set[str]:
-        """Return the sensors that are pressed now."""
+        """Return the names of the sensors that things in the hall press now."""
         touching = self._data.contact.geom
         if self._solid.isdisjoint(touching.ravel().tolist()):
             return set()
@@ -39,7 +39,7 @@ class TactileSensors:
         return {name for i, pair in at for name, site in self._sites.items() if self._in(site, i, pair)}
 
     def _in(self, site: int, contact: int, pair: list[int]) -> bool:
-        """Return whether a contact with the site's body is inside the site's box."""
+        """Return True if a contact with the site's body is inside the site's box."""
         if self._model.site_bodyid[site] not in self._model.geom_bodyid[pair]:
             return False
         away = self._data.contact.pos[contact] - self._data.site_xpos[site]
@@ -48,7 +48,7 @@ class TactileSensors:
 
 
 NEWTONS_PER_KILOGRAM = 9.81
-"""Newtons per kilogram: ALMemory gives these forces in kilograms."""
+"""The newtons in a kilogram of force: ALMemory gives these forces in kilograms."""
 
 SENSED_FEET = {"left": "LFoot", "right": "RFoot"}
 """ALMemory's names of the feet, by side."""
@@ -70,8 +70,9 @@ class ForceSensors:
         self._feet = {foot: [name.startswith(foot) for name in self._places] for foot in SENSED_FEET.values()}
 
     def weigh(self) -> Mapping[str, float]:
-        """Return the force at each sensor [kg] by ALMemory's name (`LFoot/FSR/FrontLeft`), and each foot's
-        `TotalWeight`.
+        """Return the force at each sensor [kg] by ALMemory's name, and the sum for each foot.
+
+        The names are such as `LFoot/FSR/FrontLeft` and `LFoot/FSR/TotalWeight`. Without sensors there are no forces.
         """
         if not self._places:
             return {}
@@ -83,7 +84,7 @@ class ForceSensors:
 
 
 def _corners(model: mujoco.MjModel, names: Iterable[str], prefix: str) -> list[tuple[str, int]]:
-    """Return each site's corner of the sole (`FrontLeft`) and its id."""
+    """Return the corner of the sole, such as `FrontLeft`, and the id of each site."""
     sites = [model.site(f"{prefix}/{name}").id for name in names]
     middle = model.site_pos[sites].mean(axis=0)
     ahead = ["Front" if x > middle[0] else "Rear" for x in model.site_pos[sites, 0]]

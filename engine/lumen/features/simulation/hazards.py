@@ -13,5 +13,5 @@ class Hazards:
         self._sonars, self._pressed = sonars, pressed
 
     def danger(self) -> str:
-        """Return why the robot must not walk now; empty if nothing is in the way."""
+        """Return the reason why the robot must not walk now; empty if nothing is in the way."""
         return danger(self._pressed, self._sonars.measure() if self._sonars else ())

@@ -11,7 +11,7 @@ JointVector = NDArray[np.float64]
 
 
 class JointEnvelope:
-    """Limits, coupled limits, greatest speeds and shared motors of one body."""
+    """The limits, coupled limits, maximum speeds and shared motors of one body."""
 
     def __init__(self, body: Body) -> None:
         names = list(body.joints)
@@ -25,7 +25,7 @@ class JointEnvelope:
     def step(self, last: JointVector, goal: JointVector, dt: float) -> JointVector:
         """Return the command that follows `last` on the way to `goal`, `dt` [s] later.
 
-        Every joint stays inside its limits and below its greatest speed, whatever the goal is. If a joint can't follow
+        Every joint stays inside its limits and below its maximum speed, whatever the goal is. If a joint can't follow
         a coupled limit in time, the joint that narrows the limit waits.
         """
         reach = self.speed * dt

@@ -1,4 +1,4 @@
-"""A safe movement from one posture to another."""
+"""A safe movement of joints from one posture to another."""
 
 from collections.abc import Callable, Mapping
 
@@ -6,21 +6,20 @@ from lumen.features.simulation.motors import Motors
 from lumen.robot.joint_ways import way_duration
 
 MIN_TRANSITION_TIME, MAX_TRANSITION_TIME = 0.6, 2.0
-"""The duration of a change of posture [s] at speed 1 and at the slowest; within these the robot never fell."""
+"""The duration of a change of posture [s] at speed 1 and at the slowest; with these the robot never fell in trials."""
 
 _HALT = 0.4
 
 
 def duration(speed: float) -> float:
-    """Return the duration of a change of posture [s] at that share of the greatest speed."""
+    """Return the duration of a change of posture [s] at a `speed` that is a share of the maximum, above 0 to 1."""
     return min(MAX_TRANSITION_TIME, MIN_TRANSITION_TIME / speed)
 
 
 class JointTransition:
-    """Moves all joints of `targets` together along a smoothstep, for `seconds` or as much longer as the slowest joint
-    needs.
+    """Moves all joints of `targets` [rad] together along a smoothstep, within `seconds` or as long as one needs.
 
-    `after` is called once at the end. A cancelled transition comes to a halt within 0.4 s.
+    `after` is called once at the end, but not after `cancel`. A cancelled transition comes to a halt within 0.4 s.
     """
 
     def __init__(
@@ -50,7 +49,7 @@ class JointTransition:
         return u >= 1.0
 
     def cancel(self) -> None:
-        """Begin to slow down."""
+        """Begin to slow down; `advance` returns True once the joints are at rest."""
         u = min(1.0, (self._now - self._begin) / self._seconds)
         self._halt = self._now, u * u * (3 - 2 * u), 6 * u * (1 - u) / self._seconds
 

@@ -18,16 +18,19 @@ from lumen.language.roles import LEG_ROLES
 from lumen.motion.gait.legs import SIDE_ROLES, SIDES, LegGeometry, LegVector, Side, SoleSize, sign
 
 MEETING_TOLERANCE = 1e-3
-"""The distance below which axes intersect, and legs are alike [m]."""
+"""The tolerance [m] within which axes intersect, and legs are alike."""
 
 STRAIGHT_TOLERANCE = 0.02
-"""The deviation of an axis from its direction that is accepted [rad]."""
+"""The deviation of an axis from its direction that is tolerated [rad]."""
 
 NANOMETRES = 9
-"""The decimals that are kept [m], [rad]: enough for the MJCF's numbers, without the rounding errors of their sums."""
+"""The number of decimals that are kept of lengths [m] and angles [rad].
+
+They are enough for the MJCF's numbers, and drop the rounding errors of their sums.
+"""
 
 TOUCHES = 0.003
-"""Points up to this height above a sole belong to it [m]."""
+"""The height above a sole up to which points belong to it [m]."""
 
 
 class _Leg(NamedTuple):
@@ -50,7 +53,10 @@ class _Leg(NamedTuple):
 
 
 def read_legs(model: mujoco.MjModel, body: Body) -> LegGeometry:
-    """Return the legs of a body whose model has no world. Raises RobotModelError if the robot can't walk on them."""
+    """Return the geometry of a body's legs, read from its model without a world.
+
+    Raises RobotModelError if the robot can't walk on them.
+    """
     names = {side: tuple(body.roles.name(f"legs.{SIDE_ROLES[side]}.{role}") for role in LEG_ROLES) for side in SIDES}
     for side in SIDES:
         if lost := [role for role, name in zip(LEG_ROLES, names[side], strict=True) if not name]:
@@ -131,7 +137,7 @@ class _LegReader:
         )
 
     def _chained(self, names: tuple[str, ...]) -> bool:
-        """Return whether each of these joints carries the next one."""
+        """Return True if each of these joints carries the next one."""
         order = [(int(self._model.joint(name).bodyid[0]), self._model.joint(name).id) for name in names]
         parents = self._model.body_parentid
 
@@ -219,8 +225,9 @@ def _compare(left: _Leg, right: _Leg) -> None:
 
 
 def _meet(pitch: LegVector, roll: LegVector, names: tuple[str, str]) -> LegVector:
-    """Return the point where a lateral axis meets one that points ahead. Raises RobotModelError if they pass each
-    other.
+    """Return the intersection of a lateral axis with an axis that points ahead.
+
+    Raises RobotModelError if the axes pass each other.
     """
     if (apart := abs(float(pitch[2] - roll[2]))) > MEETING_TOLERANCE:
         raise _apart(names[0], names[1], apart)

@@ -12,16 +12,16 @@ from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
 FONTS = ("DejaVuSans.ttf", "NotoSans-Regular.ttf", "LiberationSans-Regular.ttf", "Arial.ttf", "arial.ttf")
-"""Fonts to look for among the system's; without any, Pillow's own font is used, which has no accents."""
+"""The fonts to look for in the system; without any, Pillow's own font is used, which has no accents."""
 
 SUBTITLE_HEIGHT, TITLE_HEIGHT = 0.05, 0.1
 """The height of a line, as a share of the picture's height."""
 
 MAX_LINES = 2
-"""The most lines of a subtitle: more would hide the robot and be read before they are spoken."""
+"""The maximum number of lines of a subtitle: more would hide the robot, and be read before they are spoken."""
 
 SUBTITLE_WIDTH = 0.72
-"""The greatest width of a line of subtitles, as a share of the picture's width."""
+"""The maximum width of a line of subtitles, as a share of the picture's width."""
 
 CLAUSE_ENDS = ".,;:!?…"
 ROBOT_COLOUR, VISITOR_COLOUR = (255, 255, 255), (255, 221, 130)
@@ -32,14 +32,17 @@ Colour = tuple[int, int, int]
 
 
 class Overlay(NamedTuple):
-    """Letters on a background: RGBA, Shape (height, width, 4), and the position of its upper left corner [px]."""
+    """Letters on a background: an image with opacity, and its place in a picture.
+
+    `pixels` is RGBA, Shape (height, width, 4); `left` and `top` are the position of its upper left corner [px].
+    """
 
     pixels: NDArray[np.uint8]
     left: int
     top: int
 
     def lay_on(self, picture: NDArray[np.uint8], opacity: float = 1.0) -> None:
-        """Blend it into a picture, Shape (height, width, 3), in place."""
+        """Blend the overlay into a picture, Shape (height, width, 3), in place; `opacity` is from 0 to 1."""
         height, width = self.pixels.shape[:2]
         part = picture[self.top : self.top + height, self.left : self.left + width]
         alpha = self.pixels[:, :, 3:].astype(np.uint16) * round(256 * opacity) // 256
@@ -48,7 +51,10 @@ class Overlay(NamedTuple):
 
 @lru_cache(maxsize=64)
 def subtitle_pages(text: str, width: int, height: int) -> tuple[str, ...]:
-    """Return the text as successive subtitles of at most MAX_LINES lines, split at the end of a clause if possible."""
+    """Return the text as successive subtitles of at most MAX_LINES lines, split at the end of a clause if possible.
+
+    `width` and `height` are those of the picture [px].
+    """
     font, plain = _font(round(height * SUBTITLE_HEIGHT * 0.78))
 
     def fits(words: list[str]) -> bool:
@@ -123,7 +129,7 @@ def _filled(words: list[str], font: Font, most: float) -> list[str]:
 
 @lru_cache(maxsize=4)
 def _font(size: int) -> tuple[Font, bool]:
-    """Return a font of that height [px], and whether it is limited to ASCII."""
+    """Return a font of that height [px], and True if it has only ASCII letters."""
     for name in FONTS:
         try:
             return ImageFont.truetype(name, size, layout_engine=ImageFont.Layout.BASIC), False

@@ -1,4 +1,4 @@
-"""The robot's lights and the things it holds: colours of materials of the model."""
+"""The robot's lights and the things in its hand, shown by the colours of the model's materials."""
 
 from collections.abc import Iterable, Iterator, Mapping
 
@@ -14,10 +14,10 @@ RENDERED_COLOURS: Mapping[object, int] = {
     "yellow": 0xFFE020, "orange": 0xFF8810, "cyan": 0x20E0F0, "magenta": 0xFF30D0, "purple": 0x9030FF,
     "pink": 0xFF80C0, "turquoise": 0x30E0C0, "gold": 0xFFC030, "violet": 0xA050FF,
 }  # fmt: skip
-"""The colours of lit LEDs as seen through their covers; other names and values are CSS colours."""
+"""The colours of lit LEDs as seen through their covers; other names and values are drawn as CSS colours."""
 
 PROPS = ("microphone",)
-"""Things that the robot can hold for show: materials of the MJCF, invisible until then."""
+"""The things that the robot can hold for show: materials of the MJCF, invisible until then."""
 
 _SPEAKING = (0.4, 0.9, 1.0)
 _WHITE = np.array([channel / 255 for channel in RENDERED_COLOURS["white"].to_bytes(3, "big")], np.float32)
@@ -41,8 +41,9 @@ class Lights:
         self._worn: str | None = ""
 
     def show(self, colours: Mapping[str, object]) -> None:
-        """Set these groups of lights to a colour each, a name or `#rrggbb`; unknown groups and colours change
-        nothing.
+        """Set each of these groups of lights to a colour, a name or `#rrggbb`.
+
+        Unknown groups and colours change nothing.
         """
         for light, colour in self.lights_of(colours):
             shown = rendered(colour)
@@ -68,7 +69,7 @@ class Lights:
         """Draw this colour over the eyes, `off` for a blink; an empty text removes it.
 
         A colour other than `off` shows only on eyes that have their first colour or are white: lights set by a command
-        win.
+        have priority.
         """
         if colour == self._worn:
             return
@@ -95,7 +96,7 @@ class Lights:
                 self.draw(light, self._first[self._ids[light], :3])
 
     def reset(self) -> None:
-        """Restore the robot's looks at the start."""
+        """Restore all colours to those at the start."""
         self._unlit.clear()
         self._worn = ""
         self._colours[:] = self._first
@@ -114,12 +115,12 @@ class Lights:
 
 
 def _alike(one: NDArray[np.float32], other: NDArray[np.float32]) -> bool:
-    """Return whether two colours look the same."""
+    """Return True if two colours look the same."""
     return bool((np.abs(one - other) < _UNSEEN).all())
 
 
 class LightFade:
-    """Changes lights evenly to their colours within `seconds` [s]; cancelled, it sets them at once."""
+    """Changes lights evenly to their colours within `seconds` [s]; `cancel` sets them at once."""
 
     def __init__(self, lights: Lights, colours: Mapping[str, object], seconds: float, now: float) -> None:
         self._lights, self._seconds, self._begin = lights, seconds, now

@@ -1,4 +1,4 @@
-"""Places and shapes of a robot's links for given joint angles: computed, not simulated."""
+"""The places and shapes of a robot's links for given joint angles: computed, not simulated."""
 
 from collections.abc import Iterator, Mapping
 from math import cos, sin
@@ -19,7 +19,7 @@ SEEN_GROUP = 2
 
 
 class LinkFrames:
-    """The links of a body whose MJCF is in `models`. Raises RobotModelError if it can't be built."""
+    """The links of a body whose MJCF is in the folder `models`. Raises RobotModelError if the model can't be built."""
 
     def __init__(self, body: Body, models: Path) -> None:
         self._model = mjcf.Physics.from_mjcf_model(alone(body, models)).model.ptr
@@ -29,7 +29,10 @@ class LinkFrames:
         self._names = [self._model.body(number).name for number in range(self._model.nbody)]
 
     def frames(self, joints: Joints) -> Iterator[LinkFrame]:
-        """Yield each link in its parent's frame; the first is in the hall's, its lowest point on the floor."""
+        """Yield each link with its pose in its parent's frame.
+
+        The first one is in the hall's frame, with the robot's lowest point on the floor.
+        """
         model, data = self._model, self._data
         for name, angle in zip(joints.names, joints.angles, strict=True):
             if (place := self._places.get(name)) is not None:

@@ -20,11 +20,13 @@ from lumen.language.robots import Body
 from lumen.project.packaged_models import mjcf_path
 
 _GEAR_INERTIA, _GEAR_DAMPING = 0.01, 0.01
-"""Armature [kg m^2] and damping [N m s/rad] of the play's joint. Chosen: with smaller values the robot rattles at rest.
+"""The armature [kg m^2] and damping [N m s/rad] of the joint that models the play.
+
+Chosen: with smaller values the robot rattles at rest.
 """
 
 _STIFFNESS, _HARDNESS = (0.005, 1.0), (0.99, 0.999, 0.001)
-"""The stiffness of the ends of the gears' play: `solreflimit`, `solimplimit`."""
+"""The stiffness of the ends of the gears' play: MuJoCo's `solreflimit` and `solimplimit`."""
 
 
 def loosen(robot: mjcf.RootElement, body: Body) -> None:
@@ -53,10 +55,11 @@ def loosen(robot: mjcf.RootElement, body: Body) -> None:
 
 
 def add_servos(robot: mjcf.RootElement, body: Body) -> None:
-    """Give each joint without a position servo of its name one, which replaces other motors of the joint.
+    """Give a position servo to each joint that has none of its name; it replaces other motors of the joint.
 
     A servo reaches the joint's full `effort` at an error of `body.give` [rad] and is critically damped (MuJoCo's
     `dampratio`, with the masses in the zero posture). Joints that the model lacks, or without a known effort, get none.
+    If `body.give` is 0, nothing changes.
     """
     if not body.give:
         return
@@ -90,8 +93,8 @@ def load(
 ) -> mjcf.RootElement:
     """Return the hall with the robot on its stage; `hall` is relative to `models`, or absolute.
 
-    The robot can fall, unless its base is fixed: then it is part of its mount. Raises RobotError if a file
-    is not MJCF or lacks elements that the simulation needs; the error lists all of them.
+    The robot can fall, unless its base is fixed: then it is part of its mount. Raises RobotError if a file is not MJCF,
+    or lacks elements that the simulation needs; the error lists all of them.
     """
     world = read_hall(models, hall)
     place(world, hall, body, models, world.find("site", STAGE_SITE), backlash=backlash)
@@ -132,8 +135,9 @@ def place(
 
 
 def alone(body: Body, models: Path) -> mjcf.RootElement:
-    """Return the robot without a world and without a free joint, ready to be attached. Raises RobotError as `load`
-    does.
+    """Return the robot without a world and without a free joint, ready to be attached.
+
+    Raises RobotError as `load` does, and for a body that has no MJCF.
     """
     if not body.mjcf:
         raise RobotModelError(f"{body.name} has no MJCF: run it with --robot naoqi or --robot recording")
@@ -147,7 +151,7 @@ def alone(body: Body, models: Path) -> mjcf.RootElement:
 
 
 def compile_world(world: mjcf.RootElement) -> mujoco.MjModel:
-    """Compile the world with MuJoCo. Raises RobotError if MuJoCo can't build it."""
+    """Return the world compiled by MuJoCo. Raises RobotError if MuJoCo can't build it."""
     try:
         return mjcf.Physics.from_mjcf_model(world).model.ptr
     except Exception as error:  # The compiler raises exceptions of many types.
@@ -155,8 +159,9 @@ def compile_world(world: mjcf.RootElement) -> mujoco.MjModel:
 
 
 def _plain(error: Exception) -> str:
-    """Return the compiler's message without dm_control's advice, hashes in file names and lines of the generated
-    XML.
+    """Return the compiler's message without dm_control's advice.
+
+    Hashes in file names, and lines of the generated XML, are removed too.
     """
     reason = " ".join(str(error).split()).rpartition("Error: ")[2]
     return re.sub(r"-[0-9a-f]{40}(?=\.)|, id \d+, line \d+", "", reason)

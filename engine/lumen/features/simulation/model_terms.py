@@ -1,4 +1,4 @@
-"""The elements that the simulation needs in the MJCF of a robot and a hall, and the names of what it adds."""
+"""The elements that the simulation needs in the MJCF of a robot and a hall, and the names of elements that it adds."""
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
@@ -19,7 +19,7 @@ PLAY_SUFFIX = "Play"
 
 @dataclass(frozen=True, slots=True)
 class Variation:
-    """A robot and hall that differ from the model."""
+    """The differences of a robot and hall from their models."""
 
     mass: float = 1.0
     """The factor of all masses."""
@@ -28,15 +28,15 @@ class Variation:
 
 
 MAX_TIMESTEP = 0.01
-"""The longest timestep [s]: that of the commands to the joints."""
+"""The maximum timestep [s]: that of the commands to the joints."""
 MIN_TIMESTEP = 0.0001
-"""The shortest timestep [s]: with a shorter one no computer keeps up with real time."""
+"""The minimum timestep [s]: with a shorter one no computer keeps up with real time."""
 
 _HALL = (("site", "stage"), ("body", "visitor"), ("site", "visitor_face"))
 
 
 def lacks_of_robot(robot: mjcf.RootElement, body: Body) -> list[str]:
-    """Return, in words, what a robot's MJCF lacks of all elements that its body and the roles of its parts name."""
+    """Return, in words, the elements that a body and its roles name and that its MJCF lacks."""
     roles, base = body.roles, body.roles.base
     driven = [name for name in body.joints if name not in body.shared]
     named = [
@@ -59,13 +59,13 @@ def lacks_of_robot(robot: mjcf.RootElement, body: Body) -> list[str]:
 
 
 def wheel_motor(robot: mjcf.RootElement, wheel: str) -> str:
-    """Return the velocity actuator that turns a wheel's joint, empty if there is none."""
+    """Return the name of the velocity actuator that turns a wheel's joint; empty if there is no such actuator."""
     motors = (motor for motor in robot.find_all("actuator") if motor.tag == "velocity")
     return next((motor.name for motor in motors if motor.joint is not None and motor.joint.name == wheel), "")
 
 
 def lacks_of_hall(hall: mjcf.RootElement) -> list[str]:
-    """Return, in words, what a hall's MJCF lacks."""
+    """Return, in words, the elements and settings that a hall's MJCF lacks."""
     found = list(_lacks(hall, _HALL))
     visitor = hall.find("body", "visitor")
     if visitor is not None and not visitor.mocap:
@@ -81,7 +81,7 @@ def lacks_of_hall(hall: mjcf.RootElement) -> list[str]:
 
 
 def lacks_of_body(body: Body) -> list[str]:
-    """Return, in words, what the description of a body lacks."""
+    """Return, in words, the roles, joints and postures that a body lacks for the simulation."""
     roles = body.roles
     if not roles.torso:
         return ["the role `torso`"]

@@ -1,4 +1,4 @@
-"""The motors: every joint is moved through them."""
+"""The motors, through which every joint is moved."""
 
 from collections import deque
 from collections.abc import Collection, Iterable, Mapping
@@ -19,7 +19,7 @@ _WITHOUT_BOUND = 1e9
 
 
 class MotorTorques:
-    """The line from stall torque to no-load speed of each motor.
+    """The maximum torque of each motor as a function of its speed: a line from its stall torque to its no-load speed.
 
     A motor whose actuator has no stall torque keeps its torque at every speed; without `falling`, all do. `fastest` are
     the no-load speeds [rad/s] at the battery's nominal voltage, Shape (motors,).
@@ -32,8 +32,10 @@ class MotorTorques:
         self._stall = np.where(stall > 0.0, stall, _WITHOUT_BOUND)
 
     def limit(self, allowed: NDArray[np.float64], volts: float) -> NDArray[np.float64]:
-        """Return the least and greatest torque [N m], Shape (motors, 2): `allowed`, reduced to what `volts` [V] give at
-        the present speed.
+        """Return the minimum and maximum torque of each motor [N m], Shape (motors, 2).
+
+        These are the values `allowed`, of the same shape, reduced to the torque that `volts` [V] give at the present
+        speed.
         """
         supply, limits = volts / NOMINAL_VOLTAGE, np.empty((len(self._stall), 2))
         turning = self._world.motor_speeds / self._fastest
@@ -43,15 +45,15 @@ class MotorTorques:
 
 
 LIMP_STIFFNESS = 0.5
-"""A joint with less stiffness than this may be far from its goal."""
+"""The stiffness below which a joint may be far from its goal."""
 
 
 class Motors:
     """Drives every joint to its goal within the body's limits and speeds.
 
-    `goal` holds the joints' goals and `command` the angles sent to their servos, both of shape (joints,) [rad;
-    hands 0..1]. `effort` is the greatest torque of each motor [N m], 0 for a joint that is moved by another joint's
-    motor; `voltage` is the supply [V].
+    `goal` has the joints' goals and `command` the angles sent to their servos, both of Shape (joints,) [rad; hands
+    0..1]. `effort` is the maximum torque of each motor [N m], 0 for a joint that is moved by another joint's motor;
+    `voltage` is the supply [V].
     """
 
     def __init__(self, world: World, lacking: Imperfections | None = None) -> None:
@@ -92,7 +94,7 @@ class Motors:
             self.goal[self.index[follower]] = self.goal[self.index[leader]]
 
     def check(self, targets: Mapping[str, float]) -> None:
-        """Raise RobotError if these are not goals for this body."""
+        """Raise RobotError if a joint is unknown or its angle is not finite."""
         for name, angle in targets.items():
             if name not in self.index:
                 raise BadCommandError(f"`{name}` is not a joint of this robot")
@@ -114,14 +116,13 @@ class Motors:
         return f"{unit} " if unit else ""
 
     def lag(self, name: str) -> float:
-        """Return the distance from the joint's goal to the angle that was sent to its servo in the last period
-        [rad].
-        """
+        """Return the distance between a joint's goal and the angle last sent to its servo [rad]."""
         return self._short.item(self.index[name])
 
     def held_back(self, name: str) -> float:
-        """Return the distance of a joint from the angle sent to its servo [rad]: if it is large, the joint is blocked
-        or too weak.
+        """Return the distance of a joint from the angle sent to its servo [rad].
+
+        If it is large, the joint is blocked or too weak.
         """
         i = self.index[name]
         return abs(self._world.angles.item(i) - self.command.item(i))
@@ -136,8 +137,9 @@ class Motors:
         self._held = {self.index[name]: angle for name, angle in angles.items()}
 
     def stiffen(self, stiffness: float, names: Collection[str] | None = None) -> None:
-        """Limit these motors, or all, to that share (0..1) of their torque; limp joints start from their present
-        angle.
+        """Limit these motors, or all, to a share of their torque, from 0 to 1.
+
+        Joints that were limp get their present angles as goals, so that they do not jump.
         """
         chosen = [self.index[name] for name in names] if names is not None else list(self.index.values())
         limp = [i for i in chosen if self.stiffness[i] < LIMP_STIFFNESS]
@@ -152,8 +154,9 @@ class Motors:
         self._limits_of_torque()
 
     def drive(self, trim: JointVector, dt: float) -> None:
-        """Send the servos their angles for `dt` [s] from now; `trim` [rad] is added to the goals in this period
-        only.
+        """Send the servos their angles for `dt` [s] from now.
+
+        `trim` [rad] is added to the goals in this period only.
         """
         wanted = self.goal + self._sway
         for joint, angle in self._held.items():

@@ -1,4 +1,4 @@
-"""The robot's estimate of its feet's places since its start, from encoders alone."""
+"""The robot's estimate of its feet's positions since its start, from encoders and the gyrometer's heading."""
 
 from collections.abc import Iterable, Mapping
 
@@ -14,9 +14,10 @@ _FEET = {"L": "left", "R": "right"}
 
 
 DRIFT_AFTER_SITTING, DRIFT_AFTER_LYING_BACK, DRIFT_AFTER_FALL = 0.1, 0.25, 0.6
-"""The distances that the robot may have moved when it stands again [m]: after sitting, after lying on its back, and
-after lying on its belly or falling. Six robots of various weights on various floors were off by at most 0.05, 0.13 and
-0.47 m.
+"""The distances that the robot may have moved when it stands again [m]: after sitting, lying on its back, or a fall.
+
+The last also holds after lying on its belly. Six robots of various weights on various floors were off by at most 0.05,
+0.13 and 0.47 m.
 """
 
 
@@ -25,10 +26,10 @@ DRIFT_AFTER_CATCH = 0.1
 
 
 class Odometry:
-    """Both soles in the frame of the robot's start. `stage`, in the same frame, bounds where they may go.
+    """The positions of both soles in the frame of the robot's start. `stage`, in the same frame, bounds their steps.
 
-    `doubt` is how far the robot may really be from there [m] after it was down, since nothing measures how it slid. The
-    growing error of its steps is part of `whereabouts`.
+    `doubt` is the possible error of the position [m] because the robot was down, since nothing measures how far it
+    slid. The growing error of its steps is only part of `whereabouts`.
     """
 
     def __init__(self, legs: LegGeometry, stage: Stage | None) -> None:
@@ -45,27 +46,33 @@ class Odometry:
         return self._reckoning.whereabouts
 
     def lose(self, posture: str) -> None:
-        """Note that the robot is down, in that posture or leaving it; an empty posture means that it has fallen."""
+        """Widen the estimate: the robot is in that posture or leaving it; empty if it has fallen."""
         if not self._down:
             self._down, self._before = True, self.doubt
         self.doubt = self._reckoning.slid = max(self.doubt, self._before + drift_after(posture))
 
     def stumble(self, heading: float) -> None:
-        """Note that the feet stand, with that heading [rad], after steps that caught a fall; they may have slid."""
+        """Inform the estimate that the feet stand with that heading [rad] after steps that caught a fall.
+
+        They may have slid.
+        """
         between = middle(self.feet)
         right = Pose(between.x, between.y, heading)
         self.land({side: right.then(foot.seen_from(between)) for side, foot in self.feet.items()})
         self.doubt = self._reckoning.slid = self.doubt + DRIFT_AFTER_CATCH
 
     def keep(self, heading: float) -> None:
-        """Note that the robot stands with this heading by the gyrometer [rad]; turns since it was down are included."""
+        """Inform the estimate that the robot stands with this heading by the gyrometer [rad].
+
+        If it was down, its turn since then is added to the estimated heading.
+        """
         if self._down:
             self._down, (x, y, theta) = False, self._here
             self._believe(Pose(x, y, wrap(theta + heading - self._heading)))
         self._heading = heading
 
     def feel(self, angles: Mapping[str, float]) -> Feet:
-        """Return both feet, standing with these angles of the legs [rad]; the point between them stays the same."""
+        """Return both feet, which stand with these angles of the legs [rad]; the point between them stays the same."""
         seen: Feet = {"L": Pose(), "R": self.legs.foot_from("L", angles)}
         between = middle(seen)
         self.feet = {side: self._here.then(foot.seen_from(between)) for side, foot in seen.items()}
@@ -87,8 +94,8 @@ class Odometry:
     def check(self, steps: Iterable[Footstep], drift: float = 0.0) -> None:
         """Raise RobotError if a step goes more than `drift` [m] beyond the stage, unless the feet are that far already.
 
-        With a doubtful position the stage is smaller by `doubt` on every side, so that the robot stays on it wherever
-        it really is. If no room is left, the robot stays where it is.
+        With a doubtful position the stage is smaller by `doubt` on every side, so that the robot stays on it in any
+        case. If no room is left, no step is allowed.
         """
         if self._stage is None:
             return
@@ -114,7 +121,7 @@ class Odometry:
 
 
 def drift_after(posture: str) -> float:
-    """Return how far a robot that was in that posture may have moved [m]; an empty posture means after a fall."""
+    """Return the possible displacement of a robot that was in that posture [m]; an empty posture means after a fall."""
     if posture == "LyingBack":
         return DRIFT_AFTER_LYING_BACK
     return DRIFT_AFTER_SITTING if posture and not lies(posture) else DRIFT_AFTER_FALL

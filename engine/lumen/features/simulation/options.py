@@ -1,4 +1,4 @@
-"""`--imperfections`: a simulated robot with other imperfections than lumen.yaml's."""
+"""`--imperfections`: simulate a robot with imperfections other than lumen.yaml's."""
 
 import argparse
 
@@ -15,7 +15,10 @@ def configure_imperfections(parser: argparse.ArgumentParser) -> None:
 
 
 def imperfections_of(text: str | None) -> Imperfections | None:
-    """Return the named imperfections, None for None. Raises UsageError for an unknown name."""
+    """Return the imperfections in a list such as `noise,latency`, or in `none`; None if the option is None.
+
+    Raises UsageError for an unknown name.
+    """
     if text is None:
         return None
     if text == "none":

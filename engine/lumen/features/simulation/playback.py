@@ -15,16 +15,18 @@ from lumen.robot.joint_ways import APPROACH_TIME, RECOVERY_TIME, away, begun_fro
 _START_POSTURE_TOLERANCE = 0.05
 
 LATE, BLOCKED, BLOCKED_ON_THE_WAY = 0.05, 0.2, 0.4
-"""Tolerances [rad; hands 0..1]: of the angle sent to a joint at a key, and of the joint from that angle at the end of a
-motion and at earlier keys.
+"""The tolerated distances of joints [rad; hands 0..1].
+
+The first is that of the angle sent to a joint from its key, the others those of the joint from the angle sent: at the
+end of a motion, and at earlier keys.
 """
 
 
 class MotionPlayback:
     """A motion: first to its starting posture if the robot is elsewhere, then along its keys, with its cues.
 
-    `home` are the starting posture's angles [rad] of the joints that the motion owns; `notice` receives words and
-    sounds.
+    `home` are the starting posture's angles [rad] of the joints that the motion owns. `notice` receives the events of
+    cues for words, sounds and skills. A joint that misses its keys does not end the motion; see `missed`.
     """
 
     def __init__(
@@ -61,7 +63,10 @@ class MotionPlayback:
         return self._now - self._begin if self._trajectory else 0.0
 
     def advance(self, now: float) -> bool:
-        """Play on; return True at the end."""
+        """Continue until `now` [s]; return True at the end.
+
+        Raises BadCommandError if the motion can't be slowed down enough for the joints.
+        """
         self._now = now
         if self._recovery:
             return self._recovery.advance(now)
@@ -82,7 +87,7 @@ class MotionPlayback:
         self._recovery = JointTransition(self._motors, self._home, self._now, RECOVERY_TIME)
 
     def _begun(self, now: float) -> Trajectory:
-        """Return the way from the present angles. Raises BadCommandError if no delay makes it slow enough."""
+        """Return the trajectory from the present angles. Raises BadCommandError if no delay makes it slow enough."""
         here = self._motors.wanted(self._motion.tracks)
         self._motion, self._begin = begun_from(self._motion, self._motors.body, here), now
         self._cues = sorted(self._motion.cues, key=lambda cue: cue.time)
@@ -104,7 +109,7 @@ class MotionPlayback:
         return True
 
     def _note_keys(self, t: float) -> None:
-        """Record joints that are not at a key that has passed: they are too slow, or blocked."""
+        """Record joints that are not at a key whose time has come: they are too slow, or blocked."""
         while self._keys and self._keys[0][0] <= t:
             _, joint = self._keys.pop(0)
             self._note(joint, self._motors.lag(joint), LATE, t)
@@ -122,7 +127,7 @@ class MotionPlayback:
 
 
 class SpeechActivity:
-    """Speaks a text for `duration` [s] while the robot's ears glow; `words` are the voice's times of words."""
+    """Speaks a text for `duration` [s] while the robot's ears glow; `words` are the times of its words, if known."""
 
     def __init__(self, lights: Lights, voice: SpeechPlayback, said: Say, volume: float, now: float) -> None:
         self._lights, self._voice, self._now = lights, voice, now

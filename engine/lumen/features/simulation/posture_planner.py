@@ -14,10 +14,10 @@ from lumen.motion.postures import lies, passage, route
 from lumen.motion.trajectories import Trajectory
 
 MAX_ATTEMPTS = 3
-"""The number of attempts, in all, of a robot that ends on the floor."""
+"""The maximum number of attempts of a robot that ends on the floor."""
 
 LYING_TILT = pi / 3
-"""A torso that leans more than this is lying [rad]; that of a relaxed, sitting robot leans half as much."""
+"""The tilt of the torso beyond which the robot is lying [rad]; that of a relaxed, sitting robot is half as large."""
 
 SETTLING_TIME, REST_TIME = 1.5, 0.4
 """The times of moving the joints to the posture in which a robot lies or sits, and of resting afterwards [s]."""
@@ -32,20 +32,20 @@ class UprightSensor(Protocol):
 
 @dataclass
 class PostureState:
-    """The robot's posture or, between two postures, its passage."""
+    """The robot's posture, or the passage between two postures at which it stopped."""
 
     posture: str
-    """The posture that the robot is in or has left last."""
+    """The posture that the robot is in, or that it left last."""
     standing: Collection[str]
-    """The postures on both feet, or on whatever else the robot stands."""
+    """The postures in which the robot stands, on both feet if it has them."""
     passage: MotionDefinition | None = None
-    """The passage that was interrupted, None in a posture."""
+    """The passage that was interrupted; None if the robot is in a posture."""
     reached: float = 0.0
     """The time in that passage [s]."""
 
     @property
     def upright(self) -> bool:
-        """Whether the robot stands, on both feet if it has them."""
+        """True if the robot stands, on both feet if it has them."""
         return self.posture in self.standing and self.passage is None
 
 
@@ -58,10 +58,11 @@ def lying(feeling: UprightSensor) -> str:
 
 
 class PosturePlanner:
-    """The way to the nearest of `goals`, passage by passage, with a check of the result after each.
+    """The way to the nearest of the postures `goals`, passage by passage, with a check of the result after each.
 
-    If a passage fails, the robot lies on the floor and begins again from there, `MAX_ATTEMPTS` times in all. A
-    cancelled way halts, and the next one continues from there. `settle` is for a robot whose joints may be anywhere.
+    If a passage fails, the robot lies on the floor and begins again from there, in at most `MAX_ATTEMPTS` attempts. A
+    cancelled way halts, and the next one continues from there. `speed` is a share of the maximum, `settle` first brings
+    the joints to the present posture, for a robot whose joints may be anywhere, and `after` is called at the end.
     Raises RobotError if no way leads to a goal.
     """
 
@@ -86,11 +87,14 @@ class PosturePlanner:
 
     @property
     def passing(self) -> bool:
-        """Whether the robot is on a passage between two postures."""
+        """True if the robot is on a passage between two postures."""
         return isinstance(self._step, _Passing)
 
     def advance(self, now: float) -> bool:
-        """Move on; return True at the end. Raises RobotFailedError if the robot can't reach the posture."""
+        """Continue until `now` [s]; return True at the end.
+
+        Raises RobotFailedError if the robot can't reach the posture.
+        """
         if self._step is not None and not self._step.advance(now):
             return False
         if self._cancelled:
@@ -103,7 +107,7 @@ class PosturePlanner:
         return self._step is None
 
     def cancel(self) -> None:
-        """Halt, and remember the place on a passage."""
+        """Halt, and record the time in a passage, from which the next way continues."""
         if isinstance(self._step, _Passing):
             self._posture_state.passage, self._posture_state.reached = self._step.motion, self._step.reached
             self._step = None
@@ -112,8 +116,9 @@ class PosturePlanner:
         self._cancelled = True
 
     def _arrived(self) -> bool:
-        """Record the posture reached; return whether it is the intended one. Raises RobotFailedError after the last
-        attempt.
+        """Record the posture reached; return True if it is the intended one.
+
+        Raises RobotFailedError after the last attempt, and for a robot that neither reached the posture nor lies.
         """
         step, state = self._step, self._posture_state
         state.posture, state.passage = step.end if step else state.posture, None
@@ -152,7 +157,7 @@ class _Straight:
         self._transition = JointTransition(motors, body.postures[end], now, seconds)
 
     def advance(self, now: float) -> bool:
-        """Move on; return True at the end."""
+        """Continue until `now` [s]; return True at the end."""
         return self._transition.advance(now)
 
     def cancel(self) -> None:
@@ -169,7 +174,7 @@ class _Passing:
         self._trajectory = Trajectory(motion, motors.wanted(motion.tracks) if not reached else None)
 
     def advance(self, now: float) -> bool:
-        """Move on; return True after the rest."""
+        """Continue until `now` [s]; return True after the rest."""
         self.reached = min(now - self._begin, self.motion.duration)
         self._motors.aim(self._trajectory.sample(self.reached))
         return now - self._begin >= self.motion.duration + REST_TIME

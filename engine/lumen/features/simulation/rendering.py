@@ -20,8 +20,8 @@ HIDDEN = mujoco.mjNGROUP - 1
 class FrustumCulling:
     """Hides geoms of a model that are entirely outside the cone around a camera's picture; planes are never hidden.
 
-    It changes the geoms' groups. Without shadows the picture stays the same. Most geoms of a robot are behind its own
-    cameras, so hiding them saves time.
+    It changes the groups of the geoms. A picture without shadows stays the same. Most geoms of a robot are behind its
+    own cameras, so hiding them saves time.
     """
 
     def __init__(self, model: mujoco.MjModel) -> None:
@@ -44,7 +44,7 @@ PixelArray = NDArray[np.uint8]
 
 
 def available() -> str | None:
-    """Return why nothing can be drawn and which package to install; None if drawing works."""
+    """Return the reason why nothing can be drawn, with the package to install; None if drawing works."""
     return gl.missing()
 
 
@@ -53,13 +53,13 @@ class RenderQuality:
     """The quality, and so the cost, of a picture."""
 
     shadows: int = 0
-    """The size of the shadow map [px], 0 for no shadows."""
+    """The width of the shadow map [px]; 0 for no shadows."""
     samples: int = 0
-    """The samples per pixel against aliasing, 0 for none."""
+    """The number of samples per pixel against aliasing; 0 for none."""
     contact: bool = False
-    """Whether to draw dark spots under the feet."""
+    """Draw dark spots under the feet."""
     sides: tuple[int, int] | None = None
-    """The faces of round shapes, around and from top to bottom; None for as many as the model has."""
+    """The number of faces of round shapes, around and from top to bottom; None for that of the model."""
 
 
 CAMERA_QUALITY = RenderQuality(sides=(20, 12))
@@ -100,8 +100,9 @@ class RenderState:
 
 
 class SceneRenderer:
-    """Draws scenes of one model; each thread that uses it gets an OpenGL context of its own, made at its first
-    picture.
+    """Draws scenes of one model, on any thread.
+
+    Each thread gets an OpenGL context of its own, which is made at its first picture.
     """
 
     def __init__(self, model: mujoco.MjModel, quality: RenderQuality, soles: Soles = NO_SOLES) -> None:
@@ -117,7 +118,9 @@ class SceneRenderer:
         *,
         field_of_view: float | None = None,
     ) -> PixelArray:
-        """Return the scene as a camera of the model, or a free one, sees it; `field_of_view` is a free camera's height
+        """Return the picture of a scene through a camera of the model, by name, or through a free one.
+
+        `width` and `height` are those of the picture [px]; `field_of_view` is the vertical angle of a free camera
         [deg].
         """
         cameras: dict[tuple[int, int], _Canvas] = self._local.__dict__.setdefault("canvases", {})

@@ -46,7 +46,7 @@ from lumen.robot.skill_runner import SkillRunner
 
 
 class RobotCamera:
-    """The robot's camera: takes images that another thread draws later, and computes where points appear in them."""
+    """The robot's camera: it takes images that another thread draws later, and computes where points appear in them."""
 
     def __init__(self, world: World, camera: Camera) -> None:
         self._world, self._camera = world, camera
@@ -66,7 +66,7 @@ class RobotCamera:
         return Image(now, pixels)
 
     def pixel(self, point: tuple[float, float, float]) -> tuple[float, float] | None:
-        """Return where a point of the hall [m] appears in the image [px]; None if it is outside the image or behind."""
+        """Return the pixel of a point of the hall [m]; None if the point is behind the camera or outside the image."""
         view = self._world.data.camera(self._name)
         right, up, back = view.xmat.reshape(3, 3).T @ (point - view.xpos)
         return project((-float(back), -float(right), float(up)), self._camera)
@@ -78,14 +78,14 @@ class RobotCamera:
 
 
 class AimController:
-    """Moves the goals of joints that no command owns; for each joint a later aim replaces an earlier one."""
+    """Moves the goals of joints that no command owns; a later aim of a joint replaces an earlier one."""
 
     def __init__(self, motors: Motors) -> None:
         self._motors = motors
         self._aims: dict[str, tuple[float, float]] = {}
 
     def aim(self, aim: Aim) -> None:
-        """Begin to move these joints, each at the share `aim.speed` of its greatest speed."""
+        """Begin to move these joints, each at the share `aim.speed` of its maximum speed."""
         speeds = self._motors.envelope.speed
         for name, angle in aim.angles.items():
             speed = float(speeds[self._motors.index[name]]) * aim.speed
@@ -110,7 +110,7 @@ _EMPTY = "battery-empty"
 """The id of the `Rest` that an empty battery triggers."""
 
 STANDING_TILT = 0.3
-"""A torso that leans less than this counts as standing [rad]."""
+"""The tilt of the torso below which the robot counts as standing [rad]."""
 
 _CONDITION_EVERY = 10
 """The number of control periods between two updates of battery and heat."""
@@ -120,7 +120,7 @@ class SimulatedRobot(ExecutingRobot):
     """A robot under physics, on its stage; its time passes only in `advance`, in the caller's thread.
 
     `models` is the folder of the MJCF files, `hall` the name of one of them. The same seed and calls give the same run.
-    Without `imperfections` it has those of a NAO; `stage` bounds its feet. If it shares a `world` and the visitor's
+    By default it has the imperfections of a NAO; `stage` bounds its steps. If it shares a `world` and the visitor's
     `figure` with others, the owner of the world calls `act` and `feel` instead of `advance`. Raises RobotError if the
     models are unusable.
     """
@@ -198,16 +198,16 @@ class SimulatedRobot(ExecutingRobot):
 
     @property
     def fallen(self) -> bool:
-        """Whether the robot has fallen."""
+        """True if the robot has fallen."""
         return self._skills.fallen
 
     @property
     def awake(self) -> bool:
-        """Whether the motors are on."""
+        """True if the motors are on."""
         return self._skills.awake
 
     def speak_with(self, voice: SpeechPlayback) -> None:
-        """Use this voice for texts; it decides how long they take."""
+        """Use this voice for texts; it decides how long each takes."""
         self._skills.voice = voice
 
     def sound_with(self, playback: SoundPlayback) -> None:
@@ -226,7 +226,7 @@ class SimulatedRobot(ExecutingRobot):
             self.feel()
 
     def start(self, id: str, command: RobotCommand) -> None:
-        """Begin a command; `Aim` and `Live` have no end and no answer."""
+        """Begin a command, which `poll` answers with events under `id`; `Aim` and `Live` have no end and no answer."""
         if isinstance(command, Live):
             self._life.live(command)
             return
@@ -297,7 +297,7 @@ class SimulatedRobot(ExecutingRobot):
         self.figure.place(visitor)
 
     def face(self) -> tuple[float, float] | None:
-        """Return where the visitor's face appears in the image [px]; None if it does not."""
+        """Return the pixel of the visitor's face in the image; None without visitor or camera, or if it is hidden."""
         face = self.figure.face()
         return self._camera.pixel(face) if face and self._camera else None
 
@@ -367,8 +367,9 @@ class SimulatedRobot(ExecutingRobot):
         self._watch(self.time)
 
     def _live(self, now: float) -> None:
-        """Add small lifelike movements to joints that nothing else moves; only the head's if the robot is not on its
-        feet.
+        """Add small lifelike movements to joints that nothing else moves.
+
+        A fallen robot makes none; a robot that is not on its feet moves only its head.
         """
         owner = self._executor.owner
         free = {part for part in WHOLE_BODY if not (self.fallen or owner(part))}
@@ -380,11 +381,11 @@ class SimulatedRobot(ExecutingRobot):
         self.lights.wear_eyes(self._life.eyes(now))
 
     def _free(self, joint: str) -> bool:
-        """Return whether no command owns that joint and the motors are on."""
+        """Return True if no command owns that joint and the motors are on."""
         return self.awake and not self._executor.owner(self._skills.part(joint))
 
     def _watch(self, now: float) -> None:
-        """Detect a fall; update battery and heat every few periods."""
+        """Detect a fall, and update the position; update battery and heat every few periods."""
         tilt = self.world.tilt
         self._feel_touch()
         upright = self._skills.upright
@@ -407,7 +408,7 @@ class SimulatedRobot(ExecutingRobot):
             self._calm()
 
     def _calm(self) -> None:
-        """Reduce lifelike movements of warm motors, and of all if the battery is low."""
+        """Reduce lifelike movements of parts with warm motors, and of all parts if the battery is low."""
         for part, joints in self.body.parts.items():
             warmest = max((self.condition.temperatures[self.motors.index[joint]] for joint in joints), default=0.0)
             self._vigour[part] = vigour(float(warmest), self.condition.percentage)

@@ -1,4 +1,4 @@
-"""The robot's encoders and gyrometer, with their errors."""
+"""The robot's encoders, gyrometer and inertial unit, with their errors."""
 
 from math import atan2, exp, hypot
 
@@ -24,8 +24,8 @@ from lumen.motion.gait.poses import wrap
 class MeanRates:
     """The average rates [rad/s] at which the axes turned about themselves in the last control period.
 
-    A real gyrometer filters and so reports averages. An instantaneous rate per period would make the robot turn 3 % too
-    slowly, because motors jerk once in each period. `axes` (9,) change with the world; None always gives 0.
+    A real gyrometer filters, and so reports averages. With the instantaneous rate of each period, the robot would turn
+    3 % too slowly, because motors jerk once in each period. `axes` (9,) change with the world; None always gives 0.
     """
 
     def __init__(self, axes: NDArray[np.float64] | None) -> None:
@@ -49,13 +49,13 @@ LEARNING_PERIODS = 1200
 """The time constant of the learned bias, in control periods at rest."""
 
 REST, REST_SPREAD = 10, 0.05
-"""At rest, the readings of so many control periods differ by at most so much [rad/s]."""
+"""A number of control periods, and the maximum difference of their readings [rad/s] if the robot is at rest."""
 
 
 class GyroCalibration:
     """Learns the gyrometer's `bias` [rad/s], Shape (3,), whenever the robot is at rest, starting from a known one.
 
-    Breathing and shifting weight turn the robot to and fro, which averages to zero over twelve seconds.
+    It averages over twelve seconds, in which breathing and shifts of weight turn the robot to and fro equally.
     """
 
     def __init__(self, bias: NDArray[np.float64]) -> None:
@@ -74,8 +74,8 @@ class GyroCalibration:
 class Gyrometer:
     """A gyrometer with noise and a bias that drifts as the robot warms up; it subtracts the bias learned at rest.
 
-    The robot is assumed to have rested before the run, so only a small error of the learned bias remains. Each seed has
-    its own bias.
+    The robot is assumed to have rested before the run, so the learned bias has only a small error. Each seed has its
+    own bias.
     """
 
     def __init__(self, lacking: Imperfections, seed: int) -> None:
@@ -88,7 +88,11 @@ class Gyrometer:
         self._periods = 0
 
     def feel(self, rates: tuple[float, float, float], errors: NDArray[np.float64], *, at_rest: bool) -> list[float]:
-        """Return the measured rates [rad/s] one control period later; `errors` are draws of a normal distribution."""
+        """Return the measured rates [rad/s] one control period later.
+
+        `rates` are the true ones, and `errors` draws of the standard normal distribution. `at_rest` means that nothing
+        moves the robot on purpose.
+        """
         self._periods += 1
         warmer = WARMING * (1.0 - exp(-self._periods * CONTROL_PERIOD / WARMING_TIME))
         told: NDArray[np.float64] = self._bias + warmer * self._drift + rates + self._noise * errors
@@ -104,8 +108,8 @@ class BodySensors:
     """Reads joint angles and rates as the robot's own computer would; the same seed gives the same noise.
 
     `gyro` are the last measured rates of rolling right and pitching forward [rad/s], `turning` that of turning left,
-    less the learned bias. `heading` is the angle turned left since the start [rad]. When the robot stands again after
-    lying or sitting, the heading is right to 3 degrees: the attitude follows the gyrometer, and gravity keeps it level.
+    each without the learned bias. `heading` is the angle turned left since the start [rad]. After lying or sitting, its
+    error is at most 3 degrees, because gravity keeps the attitude level while the gyrometer turns it.
     """
 
     def __init__(self, world: World, lacking: Imperfections, seed: int = 0) -> None:

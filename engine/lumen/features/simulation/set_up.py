@@ -1,4 +1,4 @@
-"""Sets up robots under physics: one, or several in one hall, which can see and push each other."""
+"""Set up robots under physics: one, or several in one hall, which can see and push each other."""
 
 from collections.abc import Mapping
 from math import cos, sin
@@ -28,17 +28,17 @@ class HallRobot(NamedTuple):
     models: Path
     """The folder of its MJCF."""
     at: StartPose = StartPose()
-    """Its first place in the hall."""
+    """Its pose in the hall at the start."""
     imperfections: Imperfections = Imperfections()
     stage: Stage | None = None
-    """The bounds of its walks, None for no bounds."""
+    """The area in which it may move; None for no bounds."""
 
 
 class SharedHall:
     """Robots by name in one hall, whose time passes only in `advance`, in the caller's thread.
 
-    `models` is the folder of the hall. The hall has one visitor, whom all robots can see and any of them can move.
-    Raises RobotError if the models are unusable.
+    `models` is the folder of the hall's MJCF. The hall has one visitor, whom all robots can see and each of them can
+    move. Raises RobotError if the models are unusable.
     """
 
     def __init__(self, robots: Mapping[str, HallRobot], models: Path, hall: str, *, posture: str = "Stand") -> None:
@@ -95,7 +95,7 @@ def _physics(robots: Mapping[str, HallRobot], prefixes: Mapping[str, str], model
 
 
 def set_up(request: RobotRequest) -> Setup:
-    """Return a standing robot with a clock of simulated time."""
+    """Return a standing robot with a clock of simulated time. Raises RobotError if the models are unusable."""
     project = request.project
     robot = SimulatedRobot(project.body, *model_files(project), imperfections=lacking_in(request), stage=project.stage)
     return Setup(robot, SimulatedClock(robot.advance, request.pace), robot, available() or "")
@@ -121,5 +121,8 @@ def set_up_house(requests: Mapping[str, RobotRequest]) -> dict[str, Setup]:
 
 
 def lacking_in(request: RobotRequest) -> Imperfections:
-    """Return the imperfections of a robot: those of `--imperfections`, else the project's. Raises UsageError."""
+    """Return the imperfections of a robot: those of `--imperfections`, else the project's.
+
+    Raises UsageError if the option has an unknown name.
+    """
     return imperfections_of(request.options.get("imperfections")) or request.project.section(Imperfections)

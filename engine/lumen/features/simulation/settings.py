@@ -1,4 +1,4 @@
-"""Switches for the imperfections of a simulated robot: False makes the robot perfect in that respect."""
+"""The switches for the imperfections of a simulated robot: False makes the robot perfect in that respect."""
 
 from dataclasses import dataclass, fields
 

@@ -16,8 +16,9 @@ from numpy.typing import NDArray
 
 Vertices = NDArray[np.float64]
 CrossSection = tuple[float, float, float, float, float, float]
-"""The position along the axis, the ring's centre (x, y) and half widths (x, y), and the exponent: 2 for an ellipse,
-more for a box.
+"""A section: position along the axis, centre (x, y) of the ring, half widths (x, y), exponent.
+
+The exponent is 2 for an ellipse, more for a box.
 """
 
 SEGMENTS, BLEND_STEPS = 28, 3
@@ -25,14 +26,18 @@ SEGMENTS, BLEND_STEPS = 28, 3
 
 @dataclass(frozen=True)
 class Loft:
-    """A skin around sections along z, or along x for `axis="x"`, where a ring's x is -z and its y is y."""
+    """A skin around sections along z, or along x with `axis="x"`.
+
+    With `axis="x"`, the x coordinate of a ring becomes -z, and its y stays y.
+    """
 
     sections: Sequence[CrossSection]
     axis: str = "z"
 
     def skin(self, s: Vertices, theta: Vertices, offset: float = 0.0) -> Vertices:
-        """Return points at the shares `s` (0..1) of the length and the angles `theta` [rad], `offset` [mm] outwards;
-        Shape (s, theta, 3).
+        """Return points of the skin at the shares `s` (0..1) of the length and the angles `theta` [rad].
+
+        They are `offset` [mm] outside the skin; Shape (s, theta, 3).
         """
         along, cx, cy, a, b, n = _through(np.array(self.sections), s).T[:, :, None]
         c, d = np.cos(theta)[None], np.sin(theta)[None]
@@ -44,7 +49,7 @@ class Loft:
         return np.stack(points, axis=-1)
 
     def mesh(self) -> tuple[Vertices, NDArray[np.int64]]:
-        """Return vertices and triangles of the whole skin, closed at both ends."""
+        """Return the vertices [mm] and triangles of the whole skin, closed at both ends: Shape (n, 3) each."""
         s = np.linspace(0, 1, BLEND_STEPS * (len(self.sections) - 1) + 1)
         theta = np.linspace(0, 2 * np.pi, SEGMENTS, endpoint=False)
         grid = self.skin(s, theta)
@@ -74,7 +79,7 @@ class ShellPanel:
     """Its depth below the skin [mm]."""
 
     def mesh(self) -> tuple[Vertices, NDArray[np.int64]]:
-        """Return vertices and triangles of a closed slab."""
+        """Return the vertices [mm] and triangles of a closed slab: Shape (n, 3) each."""
         s = np.linspace(*self.span, 14)
         theta = np.radians(np.linspace(*self.arc, max(6, round((self.arc[1] - self.arc[0]) / 8))))
         outer, inner = self.loft.skin(s, theta, self.rise), self.loft.skin(s, theta, -self.sink)
@@ -95,12 +100,12 @@ class Ring:
     """A torus around z of radius 1000 (scaled by the MJCF)."""
 
     thick: float
-    """Half its thickness across."""
+    """Half its thickness in the direction of the radius."""
     flat: float
     """Half its thickness along z."""
 
     def mesh(self) -> tuple[Vertices, NDArray[np.int64]]:
-        """Return vertices and triangles of the torus."""
+        """Return the vertices and triangles of the torus: Shape (n, 3) each."""
         around, across = np.linspace(0, 2 * np.pi, 32, endpoint=False), np.linspace(0, 2 * np.pi, 8, endpoint=False)
         radius = 1000 + self.thick * np.cos(across)[:, None]
         x, y = radius * np.cos(around), radius * np.sin(around)
@@ -122,8 +127,9 @@ def _through(sections: Vertices, s: Vertices) -> Vertices:
 
 
 def _quads(rows: int, columns: int, wrap: bool) -> NDArray[np.int64]:
-    """Return the triangles of a grid of points, counterclockwise seen from outside; `wrap` joins the last column to the
-    first.
+    """Return the triangles of a grid of points, counterclockwise as seen from outside.
+
+    `wrap` joins the last column to the first.
     """
     count = columns if wrap else columns - 1
     r, c = (index.ravel() for index in np.meshgrid(np.arange(rows - 1), np.arange(count), indexing="ij"))

@@ -34,7 +34,7 @@ FALLEN_STIFFNESS = 0.1
 """The stiffness of a fallen robot."""
 
 PROTECTING_STIFFNESS, PROTECTING_TIME = 0.6, 0.7
-"""The stiffness of head and arms during a fall, and for how long [s]."""
+"""The stiffness of head and arms during a fall, and its duration [s]."""
 
 BREAKS_A_FALL = {
     "head.pitch": -0.6,
@@ -49,7 +49,7 @@ FIRST_POSTURE = "Stand"
 """The posture that every body has."""
 
 BACKWARDS = 0.3
-"""If up is farther ahead than this in the torso's axes, the robot falls on its back."""
+"""The forward component of the direction of up, in the torso's axes, beyond which the robot falls on its back."""
 
 FULL_VOLUME = 1.0
 """The volume of speech before any `volume` command."""
@@ -59,7 +59,7 @@ _UPRIGHT = pi / 9
 
 
 class SimulatedSkills:
-    """Begins activities; keeps whether the motors are on, the robot's posture, and whether it has fallen.
+    """Begins activities, and keeps the robot's condition: motors on, posture, fallen.
 
     `notice` receives events for the words and sounds of a motion; `playing` is the motion begun last.
     """
@@ -92,7 +92,7 @@ class SimulatedSkills:
 
     @property
     def upright(self) -> bool:
-        """Whether the robot is on both feet and is not leaving them."""
+        """True if the robot is on both feet and is not leaving them."""
         return self._posture_state.upright and not (self._way and self._way.passing)
 
     @property
@@ -105,7 +105,7 @@ class SimulatedSkills:
         return parts_of(command, self._world.body)
 
     def part(self, joint: str) -> str:
-        """Return the body part of a joint, empty if unknown."""
+        """Return the body part of a joint; empty for an unknown joint."""
         return self._part.get(joint, "")
 
     def begin(self, command: NativeCommand, now: float) -> Activity:
@@ -144,8 +144,9 @@ class SimulatedSkills:
                 assert_never(command)
 
     def fall(self, now: float) -> None:
-        """Go limp, with the head raised and the arms in the way of the fall, until `lie`; legs would be too slow to
-        help.
+        """Go limp, with the head raised and the arms in the way of the fall, until `lie` releases them.
+
+        Legs would be too slow to help.
         """
         self.fallen, self._way, self._down_at = True, None, now + PROTECTING_TIME
         self._motors.stiffen(FALLEN_STIFFNESS)
@@ -185,8 +186,9 @@ class SimulatedSkills:
     def _go(
         self, goals: tuple[str, ...], now: float, speed: float, after: Callable[[], None] | None = None
     ) -> PosturePlanner:
-        """Return the way to the nearest of these postures; a fallen or limp robot begins from how it lies or sits.
-        Raises RobotRefusedError if a fallen one does neither.
+        """Return the way to the nearest of these postures; a fallen or limp robot begins as it lies or sits.
+
+        Raises RobotRefusedError for a fallen robot that neither lies nor is upright.
         """
         limp, down = self.fallen or not self.awake, lying(self._sensors)
         if limp and down:

@@ -1,4 +1,4 @@
-"""The simulated robot's speech and sound files: how long they take, and interfaces for a real voice and a player."""
+"""The duration of the simulated robot's speech and sounds, and the interfaces of a real voice and a player."""
 
 from collections.abc import Callable
 from typing import Protocol
@@ -40,8 +40,9 @@ class SoundPlayback(Protocol):
     """Plays sound files in simulated time."""
 
     def play(self, sound: PlaySound, volume: float, now: float) -> Callable[[float], None]:
-        """Begin to play at `now` [s] with a `volume` from 0 to 1; return a function to call with the time of the end
-        [s].
+        """Begin to play at `now` [s] with a `volume` from 0 to 1.
+
+        Return a function; the caller passes it the time [s] at which the sound ends or is stopped.
         """
         ...
 

@@ -17,14 +17,15 @@ CONTACT_FORCE = 1.0
 """The contact force above which two of the robot's own links count as colliding [N]."""
 
 EXHAUSTED_TORQUE = 0.98
-"""The share of its greatest torque from which a motor counts as exhausted."""
+"""The share of its maximum torque above which a motor counts as exhausted."""
 
 LAG_TOLERANCE = 0.05
-"""A joint farther than this from its goal counts as late [rad]."""
+"""The distance of a joint from its goal beyond which it counts as late [rad]."""
 
 MASS_RANGE, FRICTION_RANGE, USUAL_FRICTION = (0.9, 1.1), (0.5, 1.0), 0.8
-"""The ranges that variants are drawn from: a factor for each link's mass, and the ground's friction; the third value is
-the friction of the unchanged model.
+"""The ranges from which variants are drawn: the factor of each link's mass, and the ground's friction.
+
+The third value is the friction of the unchanged model.
 """
 
 
@@ -32,7 +33,7 @@ class ExaminedRobot(SimulatedRobot):
     """A simulated robot that reports how hard its motion strains it."""
 
     def strain(self) -> Strain:
-        """Return tilt, self-contacts, load on the soles, exhausted motors and late joints of this moment."""
+        """Return the present strain: tilt, self-contacts, load on the soles, exhausted motors and late joints."""
         motors, playing = self.motors, self._skills.playing
         late = np.abs(motors.goal - self.world.angles)
         full = (np.abs(self.world.torques) >= EXHAUSTED_TORQUE * motors.effort) & (motors.effort > 0.0)
@@ -51,8 +52,9 @@ class ExaminedRobot(SimulatedRobot):
         return frozenset((one, other) for one, other in pairs)
 
     def _touches(self) -> Iterator[tuple[tuple[str, str], float]]:
-        """Yield the two parts in each contact, by name ("" for anything but the robot), and the contact's normal force
-        [N].
+        """Yield the names of the two parts in each contact, and the contact's normal force [N].
+
+        The name is empty for anything but the robot.
         """
         model, data, force = self.world.model, self.world.data, np.zeros(6)
         for i, (one, other) in enumerate(data.contact.geom.tolist()):
@@ -60,7 +62,7 @@ class ExaminedRobot(SimulatedRobot):
             yield (self._link(one), self._link(other)), float(force[0])
 
     def _link(self, geom: int) -> str:
-        """Return the name of a part of the robot, "" for anything else; a geom without a name has that of its link."""
+        """Return the name of a geom of the robot, or its link's if it has none; empty for other geoms."""
         model = self.world.model
         link = str(model.body(model.geom_bodyid[geom]).name)
         name = str(model.geom(geom).name) or link

@@ -32,7 +32,7 @@ class VisitorFigure:
         self.place(None)
 
     def place(self, visitor: Visitor | None) -> None:
-        """Place the figure at that visitor's place, on the floor, facing the robot's start; None removes it."""
+        """Place the figure on the floor at that visitor's position, facing the robot's start; None removes it."""
         changed = visitor and (self._visitor is None or visitor.height != self._visitor.height)
         self._visitor = visitor
         if visitor is None:

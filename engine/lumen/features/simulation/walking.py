@@ -36,7 +36,7 @@ MAX_STAGE_DRIFT = 0.02
 """The distance beyond the stage at which a later step may be planned [m]: each foot lands a little off its plan."""
 
 ARRIVAL_TOLERANCE, HEADING_TOLERANCE = 0.02, 0.05
-"""A walk that ends farther than this from its goal [m], [rad] has failed."""
+"""The distances from its goal [m], [rad] beyond which a finished walk has failed."""
 
 WALK_POSTURE_TIME, WALK_REST_TIME = 0.8, 0.2
 """The time to reach the walk's posture, and to come to rest there [s]."""
@@ -45,13 +45,17 @@ HAZARD_CHECK_PERIOD = 0.1
 """The time between two checks for hazards [s]."""
 
 ARM_SWING_GAIN, MAX_ARM_SWING, HANGING_ARM_PITCH = 2.5, 0.35, 1.0
-"""Arms whose pitch exceeds the last value [rad] swing by the first [rad/m] for each metre between the feet, at most by
-the second [rad]; the first is for legs as long as those that the paces were tuned with.
+"""The swing of hanging arms: [rad/m] for each metre between the feet, at most [rad], for a pitch above [rad].
+
+The first value is for legs as long as those that the paces were tuned with.
 """
 
 
 def way_of(command: Walk | Move) -> Pose | Velocity:
-    """Return a walk's goal or its velocity. Raises RobotError if it is not finite, or too far."""
+    """Return a walk's goal relative to the robot, or its velocity.
+
+    Raises RobotError if it is not finite, or too far.
+    """
     if isinstance(command, Move):
         velocity = Velocity(command.vx, command.vy, command.vtheta)
         if not all(map(isfinite, velocity)):
@@ -66,9 +70,9 @@ def way_of(command: Walk | Move) -> Pose | Velocity:
 
 
 class WalkController:
-    """The parts of the robot that walking uses; `begin` makes the activity of a command.
+    """Controls walks; `begin` makes the activity of a command.
 
-    `free` returns whether nothing else moves a joint, `hot` whether the motors should be spared.
+    `free` returns True if no command moves a joint, `hot` if the motors should be spared.
     """
 
     def __init__(
@@ -120,7 +124,7 @@ class WalkController:
         return self._walking
 
     def pace(self, way: Pose | Velocity, now: GaitParameters | None = None) -> GaitParameters:
-        """Return the gentle pace with hot motors, the brisk one for velocities that need it, else the usual one.
+        """Return the gentle pace if motors are hot, the brisk one for velocities that need it, else the usual one.
 
         A walk to a place is never brisk, so that it ends accurately. A walk that is brisk `now` stays so, because
         frequent changes between the two make the robot stumble.
@@ -131,7 +135,7 @@ class WalkController:
         return brisk if isinstance(way, Velocity) and (now == brisk or way.within(usual) != way) else usual
 
     def measured(self) -> dict[str, float]:
-        """Return the legs' angles by the encoders [rad]."""
+        """Return the angles of the legs' joints measured by the encoders [rad]."""
         angles = self.sensors.angles
         return {name: float(angles[i]) for name, i in self._legs}
 
@@ -148,8 +152,9 @@ class WalkController:
         )
 
     def centre_of_mass(self, legs: Mapping[str, float]) -> NDArray[np.float64]:
-        """Return the centre of mass (3,) [m] in the torso's frame, with these legs' angles [rad] and all other joints
-        at their goals.
+        """Return the centre of mass (3,) in the torso's frame [m] with these angles of the legs [rad].
+
+        All other joints are at their goals.
         """
         return self._mass_model.centre_of_mass({**self.motors.wanted(self._others), **legs})
 
@@ -179,7 +184,10 @@ class WalkActivity:
         return goes_on
 
     def advance(self, now: float) -> bool:
-        """Walk on; return True at the end. Raises RobotFailedError if a hazard stopped it or it missed its goal."""
+        """Continue until `now` [s]; return True at the end.
+
+        Raises RobotFailedError if a hazard stopped the walk, or if it missed its goal.
+        """
         self._now = now
         self._walker.balance.walking = True
         if self._walker.balance.catching:

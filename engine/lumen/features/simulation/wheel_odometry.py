@@ -17,11 +17,14 @@ from lumen.motion.wayfinding import DeadReckoning
 from lumen.ports import Whereabouts
 
 STILL_RATE = 0.15
-"""If the wheels stand still, a measured rate below this counts as the gyrometer's error [rad/s]."""
+"""While the wheels stand still, a measured rate of turning below this counts as the gyrometer's error [rad/s]."""
 
 
 class WheelOdometry:
-    """The wheels' middle in the frame of the robot's start. `stage`, in the same frame, bounds where it may drive."""
+    """The position of the wheels' middle in the frame of the robot's start.
+
+    `stage`, in the same frame, bounds where the robot may drive.
+    """
 
     def __init__(
         self, world: World, sensors: BodySensors, drive: DriveGeometry, lacking: Imperfections, stage: Stage | None
@@ -46,7 +49,7 @@ class WheelOdometry:
         return self._reckoning.slid
 
     def feel(self, dt: float) -> None:
-        """Advance the estimate by one control period of `dt` [s]: the wheels' way along the gyrometer's heading."""
+        """Advance the estimate by one control period of `dt` [s], by the wheels' way along the gyrometer's heading."""
         rolled, heading = self._encoders(), self._sensors.heading
         moved, turned = rolled - self._rolled, wrap(heading - self._heading)
         self._rolled, self._heading = rolled, heading
@@ -59,21 +62,17 @@ class WheelOdometry:
         self._reckoning.follow(*self.here)
 
     def lose(self) -> None:
-        """Note that the robot has fallen: nothing measures how far it slid."""
+        """Widen the estimate after a fall: nothing measures how far the robot slid."""
         if not self._lost:
             self._lost = True
             self._reckoning.slid += DRIFT_AFTER_FALL
 
     def keep(self) -> None:
-        """Note that the robot stands."""
+        """Inform the estimate that the robot stands again."""
         self._lost = False
 
     def check(self, *places: Pose) -> None:
-        """Raise RobotError if the robot would reach farther beyond the stage at one of these places than it does
-        already.
-
-        With a doubtful position the stage is smaller by `doubt` on every side.
-        """
+        """Raise RobotError if the robot would be farther beyond the stage at one of these places than it already is."""
         if self._stage is None:
             return
         for axis, (low, high), now, to in (

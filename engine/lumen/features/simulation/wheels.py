@@ -1,4 +1,4 @@
-"""A base with two driven wheels: the robot drives to walk, brakes to stand, and tips over if it is pushed hard."""
+"""A base with two driven wheels: the robot drives instead of walking, and tips over if it is pushed hard."""
 
 import numpy as np
 
@@ -32,16 +32,19 @@ class Wheels:
 
     @property
     def whereabouts(self) -> Whereabouts:
-        """Return the robot's estimate of its position and how far it may be wrong."""
+        """The robot's estimate of its position, and its possible error."""
         return self.odometry.whereabouts
 
     @property
     def soles(self) -> Soles:
-        """Return no soles: wheels have none."""
+        """No soles: wheels have none."""
         return NO_SOLES
 
     def walk(self, command: Walk | Move, now: float) -> Activity:
-        """Begin to drive, or change the speed of the present drive. Raises RobotRefusedError for a sideways speed."""
+        """Begin to drive, or change the speed of the present drive.
+
+        Raises RobotRefusedError for a sideways speed, a hazard, or a place beyond the stage.
+        """
         way = way_of(command)
         if isinstance(way, Velocity):
             return self._move(way, now)
@@ -83,5 +86,5 @@ class Wheels:
             self.odometry.lose()
 
     def keep(self, heading: float) -> None:
-        """Tell the odometry that the robot stands again."""
+        """Inform the odometry that the robot stands again."""
         self.odometry.keep()

@@ -1,4 +1,4 @@
-"""The running physics of one robot: its state, its sensors and the passing of time."""
+"""The running physics of one robot: its state, its sensors, and the passing of time."""
 
 from collections.abc import Mapping
 from math import acos, pi
@@ -28,7 +28,7 @@ class World:
     """MuJoCo's model and state, read in the body's own order of joints. Only the thread that steps it may use it.
 
     `model` and `data` are MuJoCo's; `physics` is dm_control's view of the same memory. Several robots may share one
-    world, passed as `shared`: then this robot's elements have names that begin with its `prefix`.
+    world, which is passed as `shared`: then the names of each robot's elements begin with its `prefix`.
     """
 
     def __init__(
@@ -63,7 +63,7 @@ class World:
         roles = body.roles
         self.torso = self.model.body(f"{prefix}/{roles.torso}").id
         self.free = roles.base.row.moves
-        """Whether the robot can leave the place of its attachment."""
+        """True if the robot can leave the place of its attachment."""
         self._soles = [f"{prefix}/{roles.soles[side]}" for side in SIDES if side in roles.soles]
         self._root = self.model.joint(f"{prefix}/").qposadr[0] if self.free else 0
         self._accelerometer = self._sensor(roles.sensors.accelerometer)
@@ -78,16 +78,18 @@ class World:
         self._start: NDArray[np.float64] = self.data.qpos[self._root : self._root + 7].copy()
 
     def step(self) -> None:
-        """Advance one control period; like dm_control's `step`, it leaves everything that depends on the position
-        computed.
+        """Advance one control period.
+
+        As after dm_control's `step`, everything that depends on the position is computed.
         """
         mujoco.mj_step2(self.model, self.data)
         mujoco.mj_step(self.model, self.data, self._substeps - 1)
         mujoco.mj_step1(self.model, self.data)
 
     def check(self) -> None:
-        """Raise RobotError if MuJoCo has warned of positions, speeds or accelerations that are not finite or too
-        large.
+        """Raise RobotError if MuJoCo has warned of values that are not finite or are too large.
+
+        These are positions, speeds and accelerations.
         """
         if self._warnings[_UNSTABLE].any():
             raise RobotModelError(
@@ -135,15 +137,15 @@ class World:
 
     @property
     def tilt(self) -> float:
-        """The angle between the torso and upright [rad]."""
+        """The angle between the torso's upward axis and the vertical [rad]."""
         return acos(min(1.0, max(-1.0, float(self._torso_axes[8]))))
 
     def set_up(self, angles: Mapping[str, float]) -> None:
         """Put the robot on its stage in this posture: both soles flat, the point between its feet at the stage's site.
 
         A robot without feet is placed with its lowest point where it was attached. Use this only to begin a run:
-        afterwards nothing but its motors moves the robot. Raises RobotError if a geom of the hall has a position that
-        is not finite.
+        afterwards only its motors move the robot. Raises RobotError if a geom of the hall has a position that is not
+        finite.
         """
         data, root = self.data, self._root
         data.qpos[self._angles] = [angles[name] for name in self.body.joints]

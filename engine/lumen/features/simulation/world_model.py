@@ -18,10 +18,11 @@ from lumen.project.memoization import memoize
 from lumen.upkeep.own_folders import CacheFolder
 
 KEPT = 16
-"""The number of compiled worlds kept on disk, of 3 MB each."""
+"""The maximum number of compiled worlds kept on disk, of 3 MB each."""
 MAX_BYTES = 32_000_000
-"""The largest total size of a world's files for which the compiled world is kept [B]: reading more at each start takes
-too long.
+"""The maximum total size of a world's files for which the compiled world is kept [bytes].
+
+Reading more at each start would take too long.
 """
 BINARY = "world.mjb"
 _LEVEL = 1
@@ -32,8 +33,8 @@ def physics(
 ) -> Physics:
     """Return the hall with the robot on its stage, ready to be simulated.
 
-    A second robot of the same body and files in `models` gets a copy of the model compiled for the first, in this
-    process or an earlier one. Raises RobotError as `model.load` does, and if MuJoCo can't build the world.
+    A second robot of the same body and files in `models` gets a copy of the model that was compiled for the first, in
+    this process or an earlier one. Raises RobotError as `model.load` does, and if MuJoCo can't build the world.
     """
     folders = {models, (models / hall).parent}
     files = {path: _version(path) for folder in folders for path in _files(folder)}
@@ -83,6 +84,6 @@ def _files(folder: Path) -> list[Path]:
 
 
 def _version(path: Path) -> tuple[int, int, int]:
-    """Return what changes whenever a file changes: its inode, size and time of modification."""
+    """Return the inode, size and time of modification of a file, which change whenever it changes."""
     status = path.stat()
     return status.st_ino, status.st_size, status.st_mtime_ns

@@ -1,4 +1,4 @@
-"""A film of a run in simulated time: directed, with subtitles, drawn by one thread per core."""
+"""A film of a run in simulated time: shots chosen by events, subtitles, drawn by one thread per core."""
 
 import os
 from collections import deque
@@ -36,10 +36,10 @@ FilmSize = tuple[int, int]
 FILM_SIZE: FilmSize = (1920, 1080)
 
 TITLE_SHOWN, TITLE_FADES = 3.0, 0.6
-"""The time for which the title is visible, and the time of its fading in or out [s]."""
+"""The time that the title is visible, and the time of its fading in or out [s]."""
 
 MAX_WAITING_FRAMES = 8
-"""The number of frames that may wait to be written; each takes as much memory as its pixels."""
+"""The maximum number of frames that wait to be written; each needs as much memory as its pixels."""
 
 FOLLOWING = 0.06
 """The share of the remaining distance that the camera moves towards its subject with each frame."""
@@ -62,9 +62,9 @@ class Picture(NamedTuple):
 class Film:
     """Writes an MP4 of a run: call `tick` whenever time has passed, and `close` at the end.
 
-    Without a `camera` of the hall it uses its own, which is directed by what `happened`. `size` is (width, height)
-    [px], both even. Raises RobotModelError if nothing can be drawn, with the package to install, or if the hall has no
-    such camera.
+    `camera` is the name of a camera of the hall; if it is empty, the film uses a camera of its own, whose shots the
+    calls of `happened` choose. `size` is (width, height) [px], both even. Raises RobotModelError if nothing can be
+    drawn, with the package to install, or if the hall has no such camera.
     """
 
     def __init__(
@@ -101,22 +101,22 @@ class Film:
         return self._due / FILM_RATE
 
     def frame_due(self, now: float) -> bool:
-        """Return whether the next frame is due at `now` [s]."""
+        """Return True if the next frame is due at `now` [s]."""
         return now + 1e-9 >= self._due / FILM_RATE
 
     def happened(self, moment: FilmMoment) -> None:
-        """Tell the director that this has happened: it may change the shot."""
+        """Record an event of the run, which may change the shot."""
         self._director.happened(moment)
 
     def says(self, text: str) -> None:
-        """Show this text as the robot's subtitle, until another follows; an empty text removes it."""
+        """Show a text as the robot's subtitle until the next one; an empty text removes it."""
         self._said, self._said_from = text, None
         if text:
             self._heard = ""
             self.happened(FilmMoment.ROBOT_SPEAKS)
 
     def hears(self, text: str, now: float) -> None:
-        """Show what the visitor says at `now` [s], for as long as it takes to read."""
+        """Show the visitor's words as a subtitle from `now` [s], for as long as they take to read."""
         self._heard, self._heard_until = text, now + 1.0 + 0.07 * len(text)
         self.happened(FilmMoment.VISITOR_SPEAKS)
 
@@ -175,7 +175,7 @@ class Film:
         return pixels
 
     def _saying(self, now: float) -> str:
-        """Return the page of the subtitle to show at `now` [s], estimated from the usual speed of speech."""
+        """Return the page of the robot's subtitle to show at `now` [s], estimated from the usual speed of speech."""
         if not self._said:
             return ""
         if self._said_from is None:

@@ -17,7 +17,7 @@ from lumen.run.audio_track import AudioTrack
 
 
 def film_path(path: Path | None, robot: str) -> Path | None:
-    """Return the path if a film can be written there, None for None. Raises UsageError otherwise."""
+    """Return the path, or None, if a film of that robot can be written there. Raises UsageError otherwise."""
     if path is None:
         return None
     if robot != "simulation":
@@ -43,7 +43,10 @@ def configure_size(parser: argparse.ArgumentParser) -> None:
 
 
 def film_size(text: str) -> tuple[int, int]:
-    """Return (width, height) [px] of a text such as `1280x720`. Raises UsageError for odd numbers or out of range."""
+    """Return (width, height) [px] of a text such as `1280x720`.
+
+    Raises UsageError for another form, odd numbers, or numbers out of range.
+    """
     match = re.fullmatch(r"(\d{1,5})[x×](\d{1,5})", text)
     sides = (int(match[1]), int(match[2])) if match else (0, 0)
     if any(side % 2 or not MIN_FILM_SIDE <= side <= MAX_FILM_SIDE for side in sides):
@@ -54,15 +57,15 @@ def film_size(text: str) -> tuple[int, int]:
 
 @dataclass(frozen=True, slots=True)
 class FilmPlan:
-    """A video of a simulated robot to be made."""
+    """The plan of a video of a simulated robot."""
 
     path: Path
     track: AudioTrack | None = None
-    """The soundtrack, None for a silent film."""
+    """The soundtrack; None for a silent film."""
     size: tuple[int, int] | None = None
-    """The width and height of the picture [px], None for the default."""
+    """The width and height of the picture [px]; None for the default."""
     progress: FilmProgress | None = None
-    """The progress to print on the terminal."""
+    """The progress to print on the terminal; None to print none."""
 
 
 class FilmOptions:

@@ -23,8 +23,9 @@ from lumen.upkeep.own_folders import private_folder
 
 
 def add_sound(film: Path, track: AudioTrack, length: float) -> None:
-    """Add this soundtrack to an MP4 of that length [s], as AAC; the pictures stay. Raises RobotFailedError if ffmpeg
-    fails.
+    """Add this soundtrack to an MP4 of that length [s], as AAC; the pictures stay the same.
+
+    Raises RobotFailedError if ffmpeg fails.
     """
     import imageio_ffmpeg
 
@@ -43,11 +44,10 @@ def add_sound(film: Path, track: AudioTrack, length: float) -> None:
 
 
 class FilmPart(Part, Observer):
-    """A part that films each tick and, when closed, adds what `track` recorded. Events of the run choose the camera's
-    shot.
+    """A part that films each tick and, when closed, adds the sound of `track`.
 
-    `size` is (width, height) [px], None for the default. Raises RobotError if nothing can be drawn, UsageError if the
-    robot is not simulated.
+    Events of the run choose the camera's shot. `size` is (width, height) [px], None for the default. Raises RobotError
+    if nothing can be drawn, UsageError if the robot is not simulated.
     """
 
     watches = True
@@ -77,7 +77,7 @@ class FilmPart(Part, Observer):
         self._now = 0.0
 
     def performing(self, command: Command, now: float) -> None:
-        """Show the subtitle of a `say`, or show the robot when a motion begins."""
+        """Show the subtitle of a spoken text; when a motion begins, request a shot of the whole robot."""
         match command:
             case Start(id, Say(text)):
                 self._saying = id
@@ -92,7 +92,7 @@ class FilmPart(Part, Observer):
             self._film.says("")
 
     def visitor_action(self, action: VisitorAction) -> None:
-        """Tell the film that the visitor arrives, leaves or speaks."""
+        """Show the visitor's words, and let arrivals and departures change the shot."""
         match action:
             case Arrive():
                 self._film.happened(self._moments.COMES)

@@ -1,14 +1,14 @@
-"""Progress of a film: drawing takes longer than the film lasts, so the time left is printed now and then."""
+"""The progress of a film: drawing takes longer than the film lasts, so the time left is printed now and then."""
 
 import time
 from collections.abc import Callable
 
 FILM_TOLD_EVERY = 15.0
-"""Real time between two lines [s]."""
+"""The real time between two lines [s]."""
 
 
 class FilmProgress:
-    """Prints with `tell` how much of a film of about `whole` [s] is drawn; 0 if its length is unknown."""
+    """Prints by `tell` how much of a film of about `whole` [s] is drawn; `whole` is 0 if the length is unknown."""
 
     def __init__(
         self, tell: Callable[[str], None], whole: float = 0.0, clock: Callable[[], float] = time.monotonic

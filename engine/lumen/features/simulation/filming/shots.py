@@ -1,7 +1,7 @@
-"""The places of a film's camera: the robot with its visitor, its face, all of it, or the visitor's own view.
+"""The shots of a film's camera: the robot with its visitor, its face, all of it, or the visitor's own view.
 
-Events choose the shot, as an editor cuts a dialogue: mostly the speaker, sometimes the listener, and no shot shorter
-than an eye can follow.
+Events choose the shot, as an editor cuts a dialogue: mostly the speaker, sometimes the listener, and each shot long
+enough for the eye.
 """
 
 from enum import StrEnum
@@ -74,7 +74,7 @@ _NEEDS_VISITOR = frozenset((Shot.TWO_SHOT, Shot.POINT_OF_VIEW))
 
 
 class ShotDirector:
-    """Chooses the shot; the same events at the same times [s] give the same film."""
+    """Chooses the shots by events; the same events at the same times [s] give the same film."""
 
     def __init__(self) -> None:
         self._shot, self._since = Shot.FULL_SHOT, 0.0
@@ -117,7 +117,7 @@ def camera_place(shot: Shot, who: Subjects, aspect: float) -> CameraPlace:
 
 
 def _two_shot(who: Subjects, visitor: HallPoint, aspect: float) -> CameraPlace:
-    """Return a camera to the side, far enough to show both from the robot's feet to the visitor's hair."""
+    """Return the place of a camera to the side, far enough to show both from the robot's feet to the visitor's hair."""
     dx, dy = visitor[0] - who.torso[0], visitor[1] - who.torso[1]
     apart = max(hypot(dx, dy), 0.3)
     low, high = who.torso[2] - 0.4, max(visitor[2] + 0.22, who.head[2] + 0.15)
@@ -130,7 +130,7 @@ def _two_shot(who: Subjects, visitor: HallPoint, aspect: float) -> CameraPlace:
 
 
 def _beside(who: Subjects, distance: float, height: float) -> HallPoint:
-    """Return a point at that distance in front of the robot, on the side away from the visitor."""
+    """Return a point at that distance and height [m] in front of the robot, on the side away from the visitor."""
     side = SIDE
     if who.visitor:
         towards = atan2(who.visitor[1] - who.torso[1], who.visitor[0] - who.torso[0]) - who.heading
@@ -144,9 +144,7 @@ def _higher(point: HallPoint, by: float) -> HallPoint:
 
 
 def free_camera(place: CameraPlace) -> tuple[float, float, float]:
-    """Return azimuth [deg], elevation [deg] and distance [m] of MuJoCo's free camera that looks at the place's
-    target.
-    """
+    """Return the azimuth [deg], elevation [deg] and distance [m] of MuJoCo's free camera at this place."""
     dx, dy, dz = (target - eye for eye, target in zip(place.eye, place.target, strict=True))
     flat = hypot(dx, dy)
     return degrees(atan2(dy, dx)), degrees(atan2(dz, flat)), hypot(flat, dz)

@@ -1,4 +1,4 @@
-"""The cases in which a motion is played: after each posture in which the behaviours may leave the robot before it."""
+"""The cases in which a motion is played: after each posture that the behaviours may leave the robot in before it."""
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -41,12 +41,12 @@ class Case:
 
     @property
     def passage(self) -> bool:
-        """Whether it leads from posture to posture: then feet may slide and links may touch on purpose."""
+        """True if the motion leads from posture to posture: then feet may slide, and links may touch on purpose."""
         return self.folder == PASSAGES
 
     @property
     def living(self) -> bool:
-        """Whether it is a style of life instead of a motion."""
+        """True if the case is a style of life instead of a motion."""
         return kind_in(self.folder) == KINDS[LIFE_FOLDER]
 
     @property
@@ -63,8 +63,9 @@ class Case:
 
 
 def cases(project: Project) -> list[Case]:
-    """Return the cases: every motion from its start and after whatever the behaviours do before it, every passage, and
-    every style of life.
+    """Return the cases of a project: every motion, every passage, and every style of life.
+
+    A motion is played from its start, and after everything that the behaviours do before it.
     """
     motions = project.motions
     ways: dict[str, list[Before]] = {name: [_to(motion.start or FIRST_POSTURE)] for name, motion in motions.items()}
@@ -92,9 +93,9 @@ def cases(project: Project) -> list[Case]:
 
 
 def _own(project: Project, shared: str) -> dict[str, str]:
-    """Return the folder of each file that this robot has in place of those of a `shared` folder.
+    """Return the robot's own folder of each file that replaces one in a `shared` folder, by the file's name.
 
-    No other robot's files were read.
+    The files of other robots are not in the project.
     """
     files = [PurePosixPath(file) for file in project.documents]
     own = {file.stem: str(file.parent) for file in files if str(file.parent) != shared}
@@ -106,8 +107,9 @@ def _to(posture: str) -> Before:
 
 
 def _end(motions: Mapping[str, MotionDefinition], action: object) -> Before | None:
-    """Return the commands that lead to the robot's posture after this action; None if it moves neither arms nor
-    legs.
+    """Return the commands that lead to the robot's posture after this action.
+
+    Return None if the action moves neither arms nor legs.
     """
     match action:
         case Posture(name):

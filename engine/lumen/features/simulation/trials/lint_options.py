@@ -42,7 +42,7 @@ class PhysicsOptions:
             raise UsageError("--physics can't be combined with --watch, --fix, --diff or `-`")
 
     def more(self, found: Sequence[Findings], wanted: Wanted, options: argparse.Namespace) -> list[Findings]:
-        """Return the findings, extended with those of the motions in simulation; print a summary of these as text."""
+        """Return the findings with those of the motions in simulation added; print a summary of these as text."""
         if not options.physics:
             return [*found]
         from lumen.cli.progress import progress

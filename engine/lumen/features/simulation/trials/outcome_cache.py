@@ -1,4 +1,4 @@
-"""Outcomes of motions in simulation, kept under `.lumen/physics/` so that each is simulated once."""
+"""Keep the outcomes of motions in simulation under `.lumen/physics/`, so that each is simulated once."""
 
 import hashlib
 import json
@@ -26,9 +26,9 @@ CODE = ("lumen.features.simulation", "lumen.fuzzy", "lumen.language", "lumen.mot
 
 
 class OutcomeCache:
-    """Keeps outcomes by everything that they depend on: the motion, the models and the engine's own code.
+    """Keeps outcomes by all that they depend on: the motion, the models and the engine's own code.
 
-    A folder that can't be written and a file that can't be read are ignored.
+    A folder that can't be written, and a file that can't be read, are ignored.
     """
 
     def __init__(self, project: Project, files: Mapping[str, bytes]) -> None:
@@ -44,7 +44,7 @@ class OutcomeCache:
         self._passages = _digest(passages.values())
 
     def recall(self, case: Case) -> dict[int, Outcome]:
-        """Return the known outcomes of a case, by number of the robot."""
+        """Return the known outcomes of a case by number of the robot; empty if there are none."""
         try:
             data = json.loads(self._file(case).read_text(encoding="utf-8"))
             return {int(number): Outcome.from_json(outcome) for number, outcome in data.items()}

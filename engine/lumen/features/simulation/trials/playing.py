@@ -1,4 +1,4 @@
-"""`lumen lint --physics`: every motion played by the simulated robot and by slightly different variants."""
+"""`lumen lint --physics`: play every motion on the simulated robot and on slightly different variants."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import closing
@@ -25,7 +25,7 @@ ROBOTS = 20
 """The number of variants that play each motion by default."""
 
 ProgressHook = Callable[[int, int, str], None]
-"""Called with the number of finished performances, their total, and the motion that is playing."""
+"""A function that is called with the number of finished performances, their total, and the name of the motion."""
 
 
 def played(
@@ -38,12 +38,11 @@ def played(
     imperfections: Imperfections | None = None,
     workers: Workers | None = None,
 ) -> tuple[Findings, list[CaseResult]]:
-    """Return a project's findings with those of its motions in simulation, and the results; nothing is played if the
-    project has errors.
+    """Return a project's findings with those of its motions in simulation, and the results.
 
-    `imperfections` replace the project's. Only motions in the requested files are played, with `keep` only those whose
-    outcome is not known, and without `workers` in this process. Raises MissingExtraError if the simulation is not
-    installed, and WorkersError.
+    Only motions in the requested files are played, and none if the project has errors. With `keep`, outcomes are kept,
+    and only motions without a known outcome are played. `imperfections` replace the project's. `workers` share the
+    work; the default is this process. Raises MissingExtraError if the simulation is not installed, and WorkersError.
     """
     root = Path(found.root)
     project = check_files(root, found.files)[0]
@@ -68,8 +67,9 @@ def played(
 
 
 def play_case(kit: UnpackedKit, case: int, robot: int, imperfections: Imperfections) -> Outcome:
-    """Play a case, given by its index in the project, with that robot; return the outcome. This is a task for
-    workers.
+    """Play a case, given by its index in the project, on the robot of that number; return the outcome.
+
+    This is a task for workers.
     """
     from lumen.features.simulation.subject import subject
 
@@ -91,8 +91,9 @@ def _play(
     robots: int,
     tell: ProgressHook,
 ) -> Iterator[tuple[int, int, Outcome]]:
-    """Yield case, robot and outcome of unknown outcomes as they arrive, ordered by robot, since each has its own model
-    to compile.
+    """Yield the case, the robot and the outcome of each unknown outcome as it arrives.
+
+    The work is ordered by robot, since each robot has its own model to compile.
     """
     every = cases(project)
     tasks = [
@@ -112,7 +113,7 @@ def _play(
 
 
 def summary(rehearsals: Sequence[CaseResult]) -> str:
-    """Return a line for each case: how many robots reached its end, and how far the torso leaned."""
+    """Return a line for each case: the number of robots that reached its end, and the lean of the torso."""
     lines = []
     for rehearsal in rehearsals:
         case, tried = rehearsal.case, rehearsal.tried
@@ -126,7 +127,7 @@ def summary(rehearsals: Sequence[CaseResult]) -> str:
 
 
 def number_of_robots(text: str) -> int:
-    """Return the number given with --robots. Raises UsageError if it is not a number from 0 to 1000."""
+    """Return the number in `--robots N`. Raises UsageError if it is not a number from 0 to 1000."""
     number = int(text) if text.isdecimal() and text.isascii() and len(text) < 10 else inf
     if number > 1000:
         raise UsageError(f"--robots must be a number from 0 to 1000, not `{text[:40]}`")

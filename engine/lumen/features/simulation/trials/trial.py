@@ -13,25 +13,23 @@ POLL_INTERVAL = 0.02
 """The time between two samples of the robot's state [s]."""
 
 STUCK_AFTER = 60.0
-"""A command that takes so much longer than its motion is stuck [s]."""
+"""The time by which a command may exceed its motion before it counts as stuck [s]."""
 
 REST_BEFORE, REST_AFTER = 0.3, 0.5
 """The time that the robot rests before and after the motion [s]."""
 
 RETRIED_AFTER = 1.5
-"""A passage that takes so much longer than its motion was tried again [s]."""
+"""The time by which a passage may exceed its motion before it counts as tried again [s]."""
 
 LEANING_TILT, FALLING_TILT = 15.0, 30.0
-"""Tilts of the torso [degrees]: a fall began when the first was exceeded; beyond the second, problems are consequences
-of the fall.
-"""
+"""The tilts of the torso at which a fall begins, and beyond which problems are consequences of the fall [degrees]."""
 
 DONE, FELL = "done", "fell"
 MAX_FOOT_SLIDE = 0.01
 """The slide of a foot under load that is accepted [m]."""
 
 BEARING_FORCE = 5.0
-"""The force from which a foot bears load [N]."""
+"""The force above which a foot bears load [N]."""
 
 TimedAmount = tuple[float, float]
 """A time from the motion's beginning [s], and a duration or amount."""
@@ -48,17 +46,17 @@ class Outcome:
     at: float = 0.0
     """The time of the answer, or of the beginning of the fall [s]."""
     tilt: float = 0.0
-    """The greatest tilt of the torso [degrees]."""
+    """The maximum tilt of the torso [degrees]."""
     leaned: float = 0.0
-    """The time of the greatest tilt [s]."""
+    """The time of the maximum tilt [s]."""
     collisions: dict[str, TimedAmount] = field(default_factory=dict)
-    """The time that two links touched [s], by `LINK and LINK`."""
+    """By `LINK and LINK`, the time at which they first touched and how long they touched [s]."""
     exhausted: dict[str, TimedAmount] = field(default_factory=dict)
-    """The longest time at full torque without a pause [s], by joint."""
+    """By joint, the time of the longest period at full torque without a pause, and its length [s]."""
     behind: dict[str, TimedAmount] = field(default_factory=dict)
-    """The greatest distance behind the motion [rad], by joint."""
+    """By joint, the time and the size of the maximum distance behind the motion [rad]."""
     slid: dict[str, TimedAmount] = field(default_factory=dict)
-    """The greatest slide while bearing load [m], by foot."""
+    """By foot, the time and the size of the maximum slide while bearing load [m]."""
 
     def to_json(self) -> dict[str, Any]:
         """Return the outcome as JSON data."""
@@ -66,8 +64,9 @@ class Outcome:
 
     @classmethod
     def from_json(cls, data: Mapping[str, Any]) -> Self:
-        """Return the outcome from JSON data. Raises KeyError, TypeError, ValueError or AttributeError if the data is
-        not one.
+        """Return the outcome from JSON data.
+
+        Raises KeyError, TypeError, ValueError or AttributeError if the data is not one.
         """
         moments = {kind: {str(k): (float(a), float(b)) for k, (a, b) in data[kind].items()} for kind in _KINDS}
         return cls(str(data["answer"]), float(data["at"]), float(data["tilt"]), float(data["leaned"]), **moments)
@@ -85,7 +84,7 @@ def attempt(case: Case, robot: Subject) -> Outcome:
 
 
 def _perform(robot: Subject, command: RobotCommand, watch: "_Watch | None" = None, duration: float = 0.0) -> str:
-    """Perform a command to its end; return `done`, `fell`, or why it failed."""
+    """Perform a command to its end; return `done`, `fell`, or the reason why it failed."""
     robot.start("it", command)
     waited = 0.0
     lasts = duration if isinstance(command, Live) else duration + STUCK_AFTER
@@ -108,7 +107,7 @@ def _answer(event: Event) -> str:
 
 
 class _Watch:
-    """Collects the problems of a performance, sample by sample; with `passage` it only watches for falls."""
+    """Collects the problems of a performance, sample by sample; for a passage or a style of life only falls."""
 
     def __init__(self, passage: bool) -> None:
         self.outcome, self._passage = Outcome(), passage
@@ -169,7 +168,7 @@ class _Watch:
 
 
 def _most(found: dict[str, TimedAmount], what: str, at: float, value: float) -> None:
-    """Keep the moment with the greatest value."""
+    """Keep the amount and its time if it exceeds the one kept before."""
     if value > found.get(what, (0.0, 0.0))[1]:
         found[what] = round(at, 3), round(value, 4)
 
@@ -187,6 +186,6 @@ class CaseResult:
         return [outcome for outcome in self.outcomes if outcome.answer]
 
     def succeeded(self, outcome: Outcome) -> bool:
-        """Return whether the robot reached the end of the motion, that of a passage at its first attempt."""
+        """Return True if the robot reached the end of the motion; of a passage, at its first attempt."""
         late = self.case.passage and outcome.at > self.case.motion.duration + RETRIED_AFTER
         return outcome.answer == DONE and not late

@@ -1,4 +1,4 @@
-"""Findings about a motion that was played in simulation, placed at the keyframes where the problem showed."""
+"""Report problems of a motion that was played in simulation, at the keyframes where they showed."""
 
 from collections.abc import Callable, Collection, Iterator, Mapping
 from math import degrees
@@ -12,7 +12,7 @@ from lumen.lint.on_request import COMES_LATE, FALLS, FEET_SLIDE, NOT_PLAYED, OVE
 from lumen.ports import Live
 
 MAX_CONTACT_TIME = 0.04
-"""The contact between two links that is accepted [s]."""
+"""The duration of a contact between two links that is accepted [s]."""
 
 MAX_FULL_TORQUE_TIME = 0.3
 """The time at full torque that is accepted of a motor [s]."""
@@ -77,7 +77,7 @@ class _Judge:
         yield from late or self._worst(OVERLOADED, lambda o: o.exhausted, MAX_FULL_TORQUE_TIME, spared)
 
     def _failure(self, failed: list[Outcome], itself: bool) -> Iterator[Diagnostic]:
-        """Report a fall, or a motion that does not end: of the robot itself (`itself`), or only of variants."""
+        """Report a fall, or a motion that does not end: on the robot itself (`itself`), or only on variants."""
         worst = failed[0]
         what = "falls" if worst.answer == FELL else f"does not finish: {worst.answer}"
         if worst.answer == "done":
@@ -107,7 +107,7 @@ class _Judge:
         limit: float,
         spared: Collection[str] = (),
     ) -> Iterator[Diagnostic]:
-        """Report the amount that exceeds its limit most, at its time, with the other joints or links that exceed it."""
+        """Report the amount that exceeds its limit most, at its time, and the other joints or links that exceed it."""
         tried = self._rehearsal.tried
         beyond = [
             (moment, what)
@@ -133,10 +133,9 @@ class _Judge:
         return f"{'play' if plural else 'plays'} this {self._case.way}"
 
     def _keys(self, at: float, joints: Collection[str]) -> NodePath:
-        """Return the path of the keyframe that the robot was moving to at `at` [s]; of these joints, if any of them
-        move.
+        """Return the path of the keyframe that the robot was moving to at `at` [s], preferably one of these joints.
 
-        In a style of life it is the sway that moves the legs fastest, or else anything fastest.
+        In a style of life it is the path of the sway that moves the legs fastest, or else all joints.
         """
         if isinstance(self._case.command, Live):
             sways = self._case.command.style.sways
@@ -148,7 +147,7 @@ class _Judge:
         return _keyframe(keys[0]) if keys else ()
 
     def _shaking(self, sway: Sway) -> tuple[float, float]:
-        """Return the speed of a sway's legs, then of all its joints; the greatest is most likely to tip the robot."""
+        """Return a sway's amplitude per period [rad/s], of its legs and of all its joints; larger ones are riskier."""
         legs = sum(abs(angle) for joint, angle in sway.joints.items() if joint in self._legs)
         return legs / sway.period, sum(map(abs, sway.joints.values())) / sway.period
 
@@ -157,7 +156,7 @@ class _Judge:
 
 
 def _words(code: Code, what: str, at: float, value: float) -> tuple[str, str]:
-    """Return the message and the hint."""
+    """Return the message and the hint of a finding about a joint, foot or pair of links."""
     if code == SELF_COLLISION:
         message = f"{what} collide here, at {at:.1f} s, for {value:.1f} s"
         return message, "move one of them around the other: add a keyframe in between, or use a wider pose"
