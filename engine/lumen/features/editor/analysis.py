@@ -1,4 +1,4 @@
-"""A project as an editor sees it: the files on disk with the unsaved texts, and everything known about them."""
+"""A project as an editor sees it: its files on disk with the unsaved texts, and what is known about them."""
 
 from collections.abc import Callable, Mapping
 from functools import cached_property
@@ -18,18 +18,18 @@ from lumen.project.yaml_reader import parse
 
 
 class Judgement(NamedTuple):
-    """The findings of a project, and its files that are invalid YAML."""
+    """The findings about a project, and by name its files that are invalid YAML."""
 
     diagnostics: tuple[Diagnostic, ...]
     broken: Mapping[str, BrokenFile]
 
 
 class Analysis:
-    """The analysis of a project's files; each part is computed when it is first needed. Nothing here raises.
+    """The analysis of a project's files. Each part is computed when it is first needed; faulty files raise no errors.
 
-    `before` is an earlier analysis of the same project: its readable version of a file replaces one that is invalid
-    now. Words that come with Lumen are known although they are not among the files. Pickled for another process, it
-    contains only the files and what is known from earlier analyses.
+    `files` are the contents by the path relative to `root`. `before` is an earlier analysis of the same project: if a
+    file is invalid YAML now, its last readable version replaces it. Words that come with Lumen are known although they
+    are not among the files. A pickled analysis contains only the files and what is known from earlier analyses.
     """
 
     def __init__(self, root: Path, files: Mapping[str, bytes], before: "Analysis | None" = None) -> None:
@@ -51,21 +51,21 @@ class Analysis:
 
     @cached_property
     def broken(self) -> Mapping[str, BrokenFile]:
-        """The files that are invalid YAML, with their readable parts."""
+        """The files that are invalid YAML, by name, with their readable replacements."""
         return broken_files(self.files, self._before)
 
     @cached_property
     def readable(self) -> Mapping[str, bytes]:
-        """The files; of invalid ones the readable parts."""
+        """The contents of all files by name; invalid YAML is replaced by its readable part."""
         return {**self.files, **{file: each.readable for file, each in self.broken.items()}}
 
     @cached_property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
-        """All findings, as from `lumen lint`; for an invalid YAML file also those about its other parts."""
+        """All findings, as from `lumen lint`; about an invalid YAML file also the findings in its readable part."""
         return self.judged(lambda: None).diagnostics
 
     def judged(self, between: Callable[[], None]) -> Judgement:
-        """Return the findings; `between` is called now and then, and may raise to stop."""
+        """Return the findings. The check calls `between` from time to time, which may raise an error to end it."""
         found = tuple(check_files(self.root, self.readable, between)[1])
         if self.broken:
             said = [d for each in self.broken.values() for d in each.diagnostics]
@@ -73,16 +73,16 @@ class Analysis:
         return Judgement(found, self.broken)
 
     def accept(self, judgement: Judgement) -> None:
-        """Store findings about these files that were computed elsewhere."""
+        """Store findings about these files that another process has computed."""
         self.__dict__.update(judgement._asdict())
 
     def prepare(self) -> None:
-        """Compute what an editor will soon need."""
+        """Compute the draft and the uses of names, which an editor will soon need."""
         _ = self.draft, self.index.uses
 
     @property
     def known(self) -> KnownFindings:
-        """The last findings that were computed while all files were readable; empty if there are none."""
+        """The signatures of the last findings that were computed while all files were readable; empty without any."""
         found = self.__dict__.get("diagnostics")
         return self._known if found is None or self.broken else frozenset(map(signature, found))
 
@@ -93,33 +93,34 @@ class Analysis:
         return found
 
     def names(self, file: str) -> NameIndex:
-        """Return the index for proposals in a file: an earlier one, which is available at once, if it includes the
-        file.
+        """Return the index of names for proposals in a file.
+
+        An earlier index that includes the file is preferred, because it is available at once.
         """
         last = self.known_index
         return last if last is not None and file in last.documents else self.index
 
     @cached_property
     def draft(self) -> ProjectDraft:
-        """The parts of the project that could be built."""
+        """The parts of the project that could be built in spite of its errors."""
         return draft(self.readable)
 
     @cached_property
     def settings(self) -> ProjectDraft:
-        """The parts that could be built from lumen.yaml and the messages' schemas alone, which is fast."""
+        """The parts that could be built from lumen.yaml and the messages' schemas alone; faster than `draft`."""
         files = {f: content for f, content in self.files.items() if kind_of(f) in ("lumen", "message")}
         return draft({**files, **{f: each.readable for f, each in broken_files(files, self._before).items()}})
 
     @cached_property
     def documents(self) -> Mapping[str, Document]:
-        """The readable files, unfiltered, and Lumen's own words unless the project replaces them."""
+        """The parsed files by name, and Lumen's own words unless the project replaces them."""
         files = {COMMON_FILE: common_words(), **self.readable}
         read = {file: parse(file, content)[0] for file, content in files.items() if kind_of(file)}
         return {file: document for file, document in read.items() if document}
 
     @cached_property
     def index(self) -> NameIndex:
-        """The index of all names."""
+        """The index of the names in all documents."""
         main = self.documents[MAIN_FILE].data if MAIN_FILE in self.documents else None
         named = main.get("behavior") if isinstance(main, dict) else ""
         return NameIndex(self.documents, frozenset(self.files), named if isinstance(named, str) else "")
@@ -129,9 +130,9 @@ class Analysis:
         return self.files.get(file, b"").decode("utf-8-sig", "replace")
 
     def readable_text(self, file: str) -> str:
-        """Return the readable text of a file."""
+        """Return the text of a file or of its readable replacement."""
         return self.readable.get(file, b"").decode("utf-8-sig", "replace")
 
     def changed(self, file: str, text: str) -> "Analysis":
-        """Return the analysis with another text in one file."""
+        """Return a later analysis with another text in one file."""
         return Analysis(self.root, {**self.files, file: text.encode("utf-8", "surrogatepass")}, self)

@@ -1,6 +1,4 @@
-"""Files that are temporarily invalid YAML: their readable parts, and findings that only result from the unreadable
-ones.
-"""
+"""Files that are temporarily invalid YAML, and findings that result only from their unreadable parts."""
 
 import re
 from collections.abc import Iterator, Mapping
@@ -16,7 +14,7 @@ from lumen.project.yaml_reader import parse
 _QUOTED = re.compile(r"[^`.#]+(?=[`.])")
 
 KnownFindings = frozenset[tuple[str, str, str]]
-"""Findings by code, file and message."""
+"""The signatures of findings: code, file and message."""
 
 
 class BrokenFile(NamedTuple):
@@ -31,12 +29,15 @@ class BrokenFile(NamedTuple):
 
 
 def broken_files(files: Mapping[str, bytes], before: Mapping[str, bytes]) -> dict[str, BrokenFile]:
-    """Return the files that are invalid YAML; `before` are their last readable versions."""
+    """Return by name the files that are invalid YAML and can be replaced; `before` are the last readable versions."""
     return {file: found for file, content in files.items() if (found := _broken(file, content, before))}
 
 
 def follows(finding: Diagnostic, broken: Mapping[str, BrokenFile], known: KnownFindings) -> bool:
-    """Return whether a finding may only result from an unreadable part of a file; `known` are earlier findings."""
+    """Return True if a finding may result only from the unreadable part of a file.
+
+    It is in or around that part, quotes a word of it, or is no error and not among the earlier findings `known`.
+    """
     here = broken.get(finding.place.file)
     if here and (here.mended is None or finding.place.line - 1 in here.mended.around | here.mended.cut):
         return True
@@ -47,7 +48,7 @@ def follows(finding: Diagnostic, broken: Mapping[str, BrokenFile], known: KnownF
 
 
 def signature(finding: Diagnostic) -> tuple[str, str, str]:
-    """Return the part of a finding that stays the same when lines are written above it."""
+    """Return the code, file and message of a finding, which stay the same when lines are written above it."""
     return finding.code, finding.place.file, finding.message
 
 
@@ -63,7 +64,7 @@ def _broken(file: str, content: bytes, before: Mapping[str, bytes]) -> BrokenFil
 def _readings(
     file: str, content: bytes, before: Mapping[str, bytes], found: tuple[Diagnostic, ...]
 ) -> Iterator[BrokenFile]:
-    """Yield possible replacements of a file, the best first."""
+    """Yield possible replacements of a file, the best first: its repaired text, then its version in `before`."""
     try:
         part = mended(file, content.decode("utf-8-sig"))
     except UnicodeDecodeError:

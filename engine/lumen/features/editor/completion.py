@@ -41,7 +41,10 @@ _SLOTS = {
 
 
 class Item(NamedTuple):
-    """A proposal: the text that replaces the last `replaces` characters, and its kind."""
+    """A proposal: its text replaces the last `replaces` characters before the cursor.
+
+    `detail` is the kind of the proposed name or a short remark, `documentation` a longer description.
+    """
 
     text: str
     detail: str
@@ -59,8 +62,9 @@ def complete(analysis: Analysis, file: str, line: int, column: int) -> list[Item
 
 
 def _fitting(items: Iterable[Item], before: str) -> list[Item]:
-    """Return the items that contain the typed letters in order: first those that begin with them, then those that
-    contain them together.
+    """Return the items that contain the typed letters in order.
+
+    First come those that begin with the letters, then those that contain them together, then all others.
     """
     ranked = [(rank, item) for item in items if (rank := _rank(item, before)) is not None]
     return [item for _, item in sorted(ranked, key=lambda each: each[0])]
@@ -119,7 +123,7 @@ class _Completion:
             yield from self.keys(path)
 
     def keys(self, path: NodePath) -> Iterator[Item]:
-        """Yield the keys of the schema that the map does not have yet."""
+        """Yield the keys of the schema that the map at a path does not have yet."""
         there = self.here.document.value(path)
         taken = there if isinstance(there, dict) else {}
         for key, schema in keys_at(self.kind, path, self.verbs).items():
@@ -127,7 +131,7 @@ class _Completion:
                 yield Item(f"{key}: ", "key", len(self.here.word), str(schema.get("description", "")))
 
     def rows(self, path: NodePath) -> Iterator[Item]:
-        """Yield names for a key of `hears`, and the words that it may begin with."""
+        """Yield names of phrases and answers for a key of `hears`, and the words that the key may begin with."""
         before, there = self.here.before, self.here.document.value(path[:-1])
         part = _PART.search(before)
         wide = len(part[0]) if part else 0
@@ -142,7 +146,7 @@ class _Completion:
                 yield Item(f"{ELSE}: ", "every sentence that no other row matches", wide)
 
     def entry_fields(self, path: NodePath) -> Iterator[str]:
-        """Yield `question.right` and the like, for the fields of entries of each `for` around a node."""
+        """Yield the fields of the entries of each `for` around a node, such as `question.right`."""
         around = self.index.data(self.scope)
         steps = [*_steps(path), ""]
         for step in steps:
@@ -156,7 +160,7 @@ class _Completion:
                 yield from (f"{loop['as']}.{key}" for key in keys)
 
     def lists(self) -> Mapping[str, Any]:
-        """Return the lists that are known here, by name; in a words file also those of behaviours that use it."""
+        """Return the lists that are known in the file, by name; in a words file also those of its users."""
         found: dict[str, Any] = {}
         users = [name for name, words in self.index.words.items() if self.scope in (name, *words)]
         for scope in dict.fromkeys((self.scope, *(s for name in users for s in (name, *self.index.words[name])))):
@@ -166,11 +170,11 @@ class _Completion:
         return found
 
     def slot_detail(self, name: str) -> str:
-        """Return the description of a slot in a phrase."""
+        """Return the description of a slot, named after a type or list, in a phrase."""
         return _SLOTS.get(name, "an entry of the list, by its `phrases`")
 
     def caught(self, path: NodePath) -> list[str]:
-        """Return the members of `heard` in the row of `hears` around a node; none elsewhere."""
+        """Return the members that `heard` has in the row of `hears` around a node; none outside such a row."""
         key = row_around(path)
         if not key:
             return []
@@ -185,18 +189,18 @@ class _Completion:
         return list(dict.fromkeys(found))
 
     def names(self, kind: NameKind, path: NodePath, *, key: bool = False) -> Iterator[Item]:
-        """Yield the names of a kind as proposals."""
+        """Yield a proposal for each name of a kind that is possible at a path."""
         wide, end = len(self.here.word), ": " if key else ""
         for name, detail in self.candidates(kind, path, key=key):
             written = f'"{name}"' if name.startswith("#") and not self.quoted() else name
             yield Item(written + end, detail or str(kind), wide)
 
     def quoted(self) -> bool:
-        """Return whether the cursor is in quotes, where a `#` begins no comment."""
+        """Return True if the cursor is in quotes, so that a `#` begins no comment."""
         return self.here.quote != ""
 
     def candidates(self, kind: NameKind, path: NodePath, *, key: bool) -> Iterator[tuple[str, str]]:
-        """Yield the names of a kind with their descriptions."""
+        """Yield the names of a kind that are possible at a path, with their descriptions."""
         match kind:
             case NameKind.STATE:
                 yield from self.states(path) if not key or self.kind == "sayings" else ()
@@ -214,7 +218,10 @@ class _Completion:
                 yield from ((name, "") for name in self.index.known(kind, scope))
 
     def states(self, path: NodePath) -> Iterator[tuple[str, str]]:
-        """Yield the possible targets: states beside this one, children, and all others by their ids."""
+        """Yield the names of states that are possible at a path, each with the state's path.
+
+        In a behaviour these are the state itself, those beside it, its children, and all others by their ids.
+        """
         tree = self.index.outlines.get(self.scope)
         if tree is None:
             return
@@ -235,7 +242,11 @@ class _Completion:
         yield from ((f"#{other.name}", other.path) for other in tree.entries.values() if other.parent)
 
     def events(self, *, waits: bool) -> Iterator[tuple[str, str]]:
-        """Yield events that may arrive if one is awaited, and awaited events if one is raised."""
+        """Yield names of events with their origins.
+
+        If the name is that of an awaited event (`waits`), events that something raises are included, but not those that
+        only other files await; otherwise all events in the project's files.
+        """
         written = self.index.at(self.file, *self.at)
         uses = [w for w in self.index.uses if w.kind is NameKind.EVENT and w is not written]
         names = dict.fromkeys(w.name for w in uses if w.defines or not waits or w.place.file == self.file)
@@ -248,7 +259,7 @@ class _Completion:
             yield from ((f.removesuffix(".") + ".*", "the engine's") for f in BUILT_IN_FAMILIES)
 
     def field(self, before: str) -> Iterator[Item]:
-        """Yield routes, or the fields of a route's message."""
+        """Yield the routes, or after a dot the fields of the route's message."""
         route, dot, part = before.partition(".")
         if dot:
             yield from (Item(name, "field", len(part)) for name in self.fields(self.schema(route)))
@@ -256,13 +267,13 @@ class _Completion:
             yield from (Item(name, "route", len(route)) for name in self.routes())
 
     def body(self, path: NodePath) -> Iterator[tuple[str, str]]:
-        """Yield the fields of the message of the action around a node."""
+        """Yield the fields of the message that the action around a node publishes."""
         around = self.here.document.value(path[:-2])
         route = around.get("route") if isinstance(around, dict) else None
         yield from ((name, "field") for name in self.fields(self.schema(str(route))))
 
     def expression(self, before: str, path: NodePath) -> Iterator[Item]:
-        """Yield the names that continue an expression."""
+        """Yield the names that continue an expression after the text `before`."""
         if call := _CALL.search(before):
             kind = _NAMED[call[1]]
             names = self.index.known(kind, self.scope)
@@ -285,7 +296,7 @@ class _Completion:
             yield from (Item(f"{name}(", what, wide) for name, what in self.functions())
 
     def beginnings(self, path: NodePath) -> list[str]:
-        """Return the names that an expression can begin with; in a function of the project its arguments."""
+        """Return the names that an expression can begin with; in a function of the project, these are its arguments."""
         if self.kind == "function":
             data = self.here.document.data
             arguments = data.get("args") if isinstance(data, dict) else None
@@ -301,11 +312,11 @@ class _Completion:
         )
 
     def is_own(self, function: str) -> bool:
-        """Return whether this is the file of that function, which can't call itself."""
+        """Return True if this is the file of that function, which can't call itself."""
         return self.kind == "function" and stem(self.file) == function
 
     def event_fields(self, path: NodePath) -> list[str]:
-        """Return the fields of the events that can arrive at an expression."""
+        """Return the data fields of the events that can arrive at an expression."""
         event = next((str(path[i + 1]) for i in range(len(path) - 2, -1, -1) if path[i] == "on"), "")
         found = (schema for name, schema in self.declared() if event and hears(event, name))
         return list(dict.fromkeys(name for schema in found for name in self.fields(schema)))
@@ -320,7 +331,7 @@ class _Completion:
         yield from events.items() if isinstance(events, dict) else ()
 
     def module_events(self) -> Mapping[str, Any]:
-        """Return the events of the project's own modules."""
+        """Return the events of the project's own modules, each with the schema of its data."""
         settings = self.analysis.settings.settings
         return own_module_events(settings.modules) if settings else {}
 
@@ -336,13 +347,13 @@ class _Completion:
         return known and (self.analysis.settings.messages.get(known.schema) or shipped_message(known.schema))
 
     def fields(self, schema: Any) -> list[str]:
-        """Return the properties of a schema."""
+        """Return the names of a schema's properties."""
         properties = schema.get("properties") if isinstance(schema, Mapping) else None
         return list(properties) if isinstance(properties, Mapping) else []
 
 
 def _steps(path: NodePath) -> Iterator[str]:
-    """Yield the keys of the states that contain a node."""
+    """Yield the keys of the states that contain a node, the outermost first."""
     for i in range(0, len(path) - 1, 2):
         if path[i] != "states":
             return

@@ -16,25 +16,25 @@ _PAIRS = {"[": "]", "{": "}"}
 
 
 class Cursor(NamedTuple):
-    """The node that is being written."""
+    """The node that is being written at the cursor."""
 
     path: NodePath
     key: bool
-    """Whether the cursor is in its key, not in its value."""
+    """True if the cursor is in the node's key, False if it is in the value."""
     before: str
     """The node's text before the cursor."""
     word: str
-    """The word that a completion replaces."""
+    """The word before the cursor, which a completion replaces."""
     quote: str
     """The quote before the word, empty without one."""
     document: Document
-    """The parsed text around the cursor, with the cursor's mark."""
+    """The parsed lines around the cursor, in which `CURSOR_MARK` is inserted."""
 
 
 def cursor(text: str, line: int, column: int, readable: Callable[[], str]) -> Cursor | None:
     """Return the node at a line and column, from 1, of a text that may be incomplete; None if it can't be determined.
 
-    `readable` returns the repaired text; it is called only if the nearby lines are not sufficient.
+    `readable` returns the repaired text; it is called only if the lines near the cursor are not sufficient.
     """
     lines = lines_of(text)
     if line > len(lines):
@@ -65,7 +65,7 @@ def _cursor(lines: list[str], line: int, column: int) -> Cursor | None:
 
 
 def _attempts(head: str, tail: str) -> list[str]:
-    """Return possible completions of the line, the most likely first."""
+    """Return versions of the line with the mark that may be valid YAML, the most likely first."""
     rest = head.rstrip("\r")
     closed = _closed(rest)
     whole = [f"{head}{CURSOR_MARK}{tail}"]

@@ -1,11 +1,11 @@
-"""Finds the definition of the thing that a name refers to, and all its uses."""
+"""Finds the places that define a thing, and those that use its name."""
 
 from lumen.features.editor.analysis import Analysis
 from lumen.language.diagnostics import Place
 
 
 def definitions(analysis: Analysis, file: str, line: int, column: int) -> list[Place]:
-    """Return where the thing at a line and column, from 1, is defined; a state by its key, not its id.
+    """Return the places that define the thing at a line and column, from 1; for a state its key, not its id.
 
     Things that come with Lumen are not defined in the project's files.
     """

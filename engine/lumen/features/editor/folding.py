@@ -8,7 +8,7 @@ from lumen.project.document import Document
 
 
 class Fold(NamedTuple):
-    """The first and the last line, from 1, of a part that folds into the first."""
+    """The first and last line, from 1, of a part that folds into its first line; `comment` tells comments from keys."""
 
     first: int
     last: int
@@ -16,7 +16,7 @@ class Fold(NamedTuple):
 
 
 def folds(document: Document) -> list[Fold]:
-    """Return all folds; of those that begin in the same line only the longest."""
+    """Return all folds of a document in order; of those that begin in the same line only the longest."""
     lines, found = lines_of(document.text), dict[int, Fold]()
     for fold in (*_nodes(document, lines), *_comments(lines)):
         if fold.last > fold.first and (fold.first not in found or found[fold.first].last < fold.last):

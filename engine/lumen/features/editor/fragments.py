@@ -3,16 +3,18 @@
 import re
 
 ANCESTORS_WHOLE, LINES_WHOLE = 3, 120
-"""The number of enclosing keys that are included with everything below them, if that is at most so many lines; of the
-outer ones only the line of the key is included.
+"""The number of inner enclosing keys that are included with everything below them, and the maximum of their lines.
+
+Of outer keys, only the key's line is included.
 """
 
 _SKIPPED = re.compile(r"\s*(#|$)")
 
 
 def fragment(lines: list[str], at: int, column: int) -> tuple[list[str], int]:
-    """Return the lines around index `at` and the line's new index; an empty line counts as indented to `column`, from
-    1.
+    """Return the lines around index `at` that show its place in the tree, and its new index.
+
+    An empty line counts as indented to `column`, from 1.
     """
     around = ancestors(lines, at, column)
     if len(around) < ANCESTORS_WHOLE:
@@ -27,7 +29,7 @@ def fragment(lines: list[str], at: int, column: int) -> tuple[list[str], int]:
 
 
 def ancestors(lines: list[str], at: int, column: int) -> list[int]:
-    """Return the indices of the lines that enclose a line, the outermost first."""
+    """Return the indices of the lines whose blocks contain the line at index `at`, the outermost first."""
     found, inner = list[int](), lines[at] if lines[at].strip() else " " * (column - 1) + "x"
     for i in range(at - 1, -1, -1):
         if _SKIPPED.match(lines[i]):
@@ -40,7 +42,7 @@ def ancestors(lines: list[str], at: int, column: int) -> list[int]:
 
 
 def block_end(lines: list[str], begin: int, at: int) -> int:
-    """Return the index after the last line of a line's block."""
+    """Return the index after the last line of the block that begins at `begin` and contains `at`."""
     if lines[begin].startswith("\t"):
         return begin + 1
     outer = _indent(lines[begin])

@@ -11,7 +11,7 @@ from lumen.project.words import ANYHOW
 MAX_REMEMBERED_PATHS = 50_000
 
 Table = Mapping[tuple[str, ...], NameKind]
-"""The ends of paths, `*` for any step; the indices of lists are left out."""
+"""The kinds of names by the end of a path: `*` matches any key, and the indices of lists are left out."""
 
 
 def _pair_names() -> Table:
@@ -20,7 +20,10 @@ def _pair_names() -> Table:
 
 
 def _field_names() -> Table:
-    """Return the kinds of names in the values of a verb's fields; the first field's may have no key."""
+    """Return the kinds of names in the values of verbs' fields.
+
+    The first field's value may also follow the verb directly.
+    """
     found: dict[tuple[str, ...], NameKind] = {}
     for verb in VERBS:
         for i, field in enumerate(verb.fields):
@@ -167,7 +170,7 @@ _OPAQUE = frozenset(("context", "types", "events", "phrases", "answers", "rename
 
 @lru_cache(maxsize=MAX_REMEMBERED_PATHS)
 def key_kind(kind: str, path: NodePath) -> NameKind | None:
-    """Return the kind of name in the key at the end of a path, in a file of that kind; None if it is not a name."""
+    """Return the kind of name in the key at the end of a path, in a file of that kind; None if it is no name."""
     steps = _steps(path)
     if kind == "sayings":
         return _SAYINGS[len(steps) - 1] if len(steps) <= len(_SAYINGS) else None
@@ -184,7 +187,7 @@ def key_kind(kind: str, path: NodePath) -> NameKind | None:
 
 @lru_cache(maxsize=MAX_REMEMBERED_PATHS)
 def value_kind(kind: str, path: NodePath) -> NameKind | None:
-    """Return the kind of name in the text at a path, in a file of that kind; None if it is not a name."""
+    """Return the kind of name in the text at a path, in a file of that kind; None if the text is not a name."""
     steps = _steps(path)
     if kind == "behavior":
         if steps[:1] and steps[0] in _OPAQUE:
@@ -197,7 +200,7 @@ def value_kind(kind: str, path: NodePath) -> NameKind | None:
 
 
 def names_verb(kind: str, path: NodePath) -> bool:
-    """Return whether the key at a path is that of a verb, or of a verb's end in a story, so that it may be a skill."""
+    """Return True if the key at a path may be a skill's name, since a verb or its end is expected there."""
     steps = [step for step in path[:-1] if isinstance(step, str)]
     if kind == "story":
         return steps[-1:] in (["skills"], ["did"]) or steps == ["robot"]
@@ -209,7 +212,7 @@ def names_verb(kind: str, path: NodePath) -> bool:
 
 
 def defines(kind: str, path: NodePath, what: NameKind) -> bool:
-    """Return whether the name at that path defines the thing."""
+    """Return True if a name of the kind `what` at that path defines its thing."""
     steps = _steps(path)
     if kind == "behavior" and what is NameKind.STATE:
         return steps[-2:-1] == ("states",)
@@ -230,7 +233,10 @@ def _steps(path: NodePath) -> tuple[str, ...]:
 
 
 def _found(table: Table, steps: tuple[str, ...], *, whole: bool = False) -> NameKind | None:
-    """Return the entry whose end matches; a longer one takes precedence, since `on: {play: …}` is not a motion."""
+    """Return the kind of the longest entry that the path ends with, or that is the `whole` path; None without one.
+
+    The longest one counts, since `on: {play: …}` is not a motion.
+    """
     lengths = (len(steps),) if whole else (3, 2, 1)
     for length in lengths:
         end = steps[-length:]

@@ -1,4 +1,4 @@
-"""Keys of `hears`, such as `not dance|sing`, `question.right` and `else`, and the row around a node."""
+"""The keys of `hears`, such as `not dance|sing`, `question.right` and `else`, and the row around a node."""
 
 import re
 from collections.abc import Iterator
@@ -27,7 +27,7 @@ def row_around(path: NodePath) -> str:
 
 
 def is_phrase(kind: str, path: NodePath) -> bool:
-    """Return whether the text at a path of a file of that kind is a phrase: of `phrases`, or of a row of `answers`."""
+    """Return True if the text at a path, in a file of that kind, is a phrase in `phrases` or in a row of `answers`."""
     if kind not in ("behavior", "words"):
         return False
     steps = tuple(step for step in path if isinstance(step, str))

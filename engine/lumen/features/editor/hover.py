@@ -20,11 +20,11 @@ from lumen.project.draft import ProjectDraft
 from lumen.project.project_folders import WORDS_FOLDER, kind_of
 
 MAX_PHRASES = 20
-"""The number of phrases of a language that are shown."""
+"""The maximum number of phrases of a language that are shown."""
 
 
 def hover(analysis: Analysis, file: str, line: int, column: int) -> str:
-    """Return the text to show for a line and column, from 1; empty if there is none."""
+    """Return the text to show for a line and column, from 1: about the name or key and its findings; or empty."""
     parts = [of_row_at(analysis, file, line, column)]
     use = analysis.index.at(file, line, column)
     if use:
@@ -36,7 +36,7 @@ def hover(analysis: Analysis, file: str, line: int, column: int) -> str:
 
 
 def describe(analysis: Analysis, use: NameUse) -> str:
-    """Return a description of a name: a state's path, a motion's duration, a joint's limits."""
+    """Return the Markdown that describes a name, such as a state's path, a motion's duration or a joint's limits."""
     title = f"{use.kind} `{use.name}`"
     facts = _facts(analysis, use)
     if use.scope == WORDS_SCOPE + COMMON and COMMON_FILE not in analysis.files:
@@ -46,7 +46,7 @@ def describe(analysis: Analysis, use: NameUse) -> str:
 
 
 def explain(diagnostic: Diagnostic) -> str:
-    """Return what the page of a finding's rule says about its meaning and importance."""
+    """Return the meaning and importance of a finding, from its rule's page; empty without a rule."""
     code = codes().get(diagnostic.code)
     if code is None:
         return ""
@@ -105,7 +105,7 @@ def _skill(draft: ProjectDraft, name: str) -> str:
 
 
 def _some(texts: Sequence[str]) -> str:
-    """Return the first texts, and the number of the others."""
+    """Return the first `MAX_PHRASES` texts, and the number of the others."""
     more = len(texts) - MAX_PHRASES
     return ", ".join(texts[:MAX_PHRASES]) + (f" and {more} more" if more > 0 else "")
 
@@ -143,7 +143,7 @@ def _function(draft: ProjectDraft, name: str) -> str:
 
 
 def _described(analysis: Analysis, file: str, line: int, column: int) -> str:
-    """Return the schema's description of the key at a place, or sentences for the phrase there."""
+    """Return the schema's description of the key at a place, or sample sentences for the phrase; else empty."""
     document = analysis.documents.get(file)
     if document is None or PurePosixPath(file).suffix != ".yaml":
         return ""

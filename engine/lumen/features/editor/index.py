@@ -1,4 +1,4 @@
-"""The index of every name in a project's files and its meaning."""
+"""The index of the names in a project's files and of their meanings."""
 
 from collections.abc import Iterator, Mapping
 from functools import cached_property
@@ -19,17 +19,17 @@ from lumen.project.outline import BehaviorOutline, OutlinedState
 from lumen.project.project_folders import kind_of
 
 WORDS_SCOPE = "words/"
-"""The prefix of a words file's name as a scope."""
+"""The beginning of the scope of a words file, before the file's name."""
 
 WORD_KINDS: Mapping[NameKind, str] = {NameKind.PHRASE: "phrases", NameKind.ANSWERS: "answers"}
-"""The kinds of names in words files, each with its key."""
+"""The kinds of names that words files define, each with the key above its definitions."""
 
 
 class NameIndex:
-    """All uses of names in a project, from its documents by file; invalid YAML files have none.
+    """All uses of names in a project, from its documents by file; files that can't be read have none.
 
-    `files` are the names of all files, since unreadable ones exist too. Documents without a file come with Lumen: their
-    names are known, but have no place.
+    `files` are the names of all files, including unreadable ones. Documents without a file come with Lumen: their names
+    are known, but have no place. `main` is the behaviour that the project runs.
     """
 
     def __init__(self, documents: Mapping[str, Document], files: frozenset[str], main: str) -> None:
@@ -38,7 +38,7 @@ class NameIndex:
 
     @cached_property
     def uses(self) -> tuple[NameUse, ...]:
-        """All uses, in the order of the files."""
+        """All uses, in the order of the files; then the names of the files."""
         found = list[NameUse]()
         for file, document in self.documents.items():
             uses = self._within(document)
@@ -51,7 +51,10 @@ class NameIndex:
         return tuple(found)
 
     def _within(self, document: Document) -> tuple[NameUse, ...]:
-        """Return the uses in one document; computed again only if it, or what its names can mean, has changed."""
+        """Return the uses in one document.
+
+        They are computed again only if the document or the possible meanings of its names have changed.
+        """
         scopes = tuple(self.scopes(document))
         states = [
             (tuple(tree.entries), tuple((name, s.path) for name, s in tree.aliases.items())) if tree else None
@@ -78,11 +81,11 @@ class NameIndex:
         return min(here, key=lambda use: len(use.text), default=None)
 
     def of(self, use: NameUse) -> list[NameUse]:
-        """Return all uses of the same thing's name."""
+        """Return all uses of the thing that this use names."""
         return [other for other in self.uses if other.thing == use.thing]
 
     def names(self, kind: NameKind, scope: str = "") -> list[str]:
-        """Return the names of all things of a kind, in the order of the files."""
+        """Return the names of all things of a kind that a scope defines, in the order of the files."""
         return list(
             dict.fromkeys(use.name for use in self.uses if use.kind is kind and use.scope == scope and use.defines)
         )
@@ -93,7 +96,10 @@ class NameIndex:
         return list(dict.fromkeys(name for each in scopes for name in self.names(kind, each)))
 
     def home(self, kind: NameKind, name: str, scope: str) -> str:
-        """Return the scope in which a behaviour's name is defined: its own, or a words file's."""
+        """Return the scope that defines a name of a behaviour: its own, or that of a words file that it uses.
+
+        A name that nothing defines belongs to the behaviour's own scope.
+        """
         if kind not in WORD_KINDS or name in _entries(self.data(scope), kind):
             return scope
         return next((w for w in self.words.get(scope, ()) if name in _entries(self.data(w), kind)), scope)
@@ -106,14 +112,15 @@ class NameIndex:
         return next(found, NameKind.PHRASE)
 
     def data(self, scope: str) -> Any:
-        """Return the data of the behaviour or words file of that scope."""
+        """Return the data of the behaviour or words file of that scope; None without one."""
         document = self.documents.get(f"behaviors/{scope}.yaml")
         return document.data if document else None
 
     @cached_property
     def words(self) -> Mapping[str, tuple[str, ...]]:
-        """The scopes of the words files that each behaviour uses; all others take precedence over the one that comes
-        with Lumen.
+        """The scopes of the words files that each behaviour uses.
+
+        The words file that comes with Lumen is the last, so that all others take precedence over it.
         """
         shipped = {WORDS_SCOPE + stem(file) for file in self.documents.keys() - self.files}
         return {
@@ -124,13 +131,13 @@ class NameIndex:
 
     @cached_property
     def own_bodies(self) -> frozenset[str]:
-        """The model that lumen.yaml names, and the one that it is based on."""
+        """The names of the robot model in lumen.yaml and of the model that it is based on."""
         robot = self._data("lumen.yaml").get("robot")
         model = str(robot.get("model", "")) if isinstance(robot, dict) else ""
         return frozenset((model, str(self._data(f"models/{model}.yaml").get("like", model))))
 
     def other_body(self, file: str) -> str:
-        """Return the model whose joints and postures a file names, empty if it is the project's own."""
+        """Return the model whose joints and postures a file names; empty if it is the project's own robot's."""
         kind, folder = kind_of(file), PurePosixPath(file).parent.name
         model = stem(file) if kind == "body" else folder if kind == "motion" and file.count("/") > 1 else ""
         return "" if model in self.own_bodies else model
@@ -140,14 +147,17 @@ class NameIndex:
         return document.data if document and isinstance(document.data, dict) else {}
 
     def scopes(self, document: Document) -> Iterator[str]:
-        """Yield the behaviours that the names in a document belong to: for sayings, each behaviour in the file."""
+        """Yield the scopes of the names in a document: for a file of sayings each of its behaviours, else one."""
         if kind_of(document.file) == "sayings":
             yield from map(str, document.data if isinstance(document.data, dict) else ())
         else:
             yield self.behavior(document.file)
 
     def behavior(self, file: str) -> str:
-        """Return the behaviour that the names in a file belong to: its own, or the one that a story plays."""
+        """Return the scope of the names in a file.
+
+        A story has that of the behaviour that it plays; one robot's version of a motion has its own, the file's path.
+        """
         if kind_of(file) == "words":
             return WORDS_SCOPE + stem(file)
         if kind_of(file) == "motion" and file.count("/") > 1:
@@ -160,7 +170,7 @@ class NameIndex:
 
 
 class _Reader:
-    """Finds the names in one document."""
+    """Finds the uses of names in one document."""
 
     def __init__(self, index: NameIndex, document: Document) -> None:
         self.index, self.document, self.kind = index, document, kind_of(document.file)
@@ -191,7 +201,7 @@ class _Reader:
                 yield from self.alias(path, value)
 
     def keyed(self, kind: NameKind, path: NodePath) -> Iterator[NameUse]:
-        """Yield the names in a key."""
+        """Yield the uses of names in a key with names of that kind."""
         key = str(path[-1])
         if kind is NameKind.ROW:
             yield from self.row(path)
@@ -201,7 +211,7 @@ class _Reader:
             yield from self.named(kind, path, key=True)
 
     def named(self, kind: NameKind, path: NodePath, *, key: bool = False) -> Iterator[NameUse]:
-        """Yield the name that a whole key or value is."""
+        """Yield the use of the name that a whole key or value is; none for a field."""
         whole = str(path[-1]) if key else str(self.document.value(path))
         text = context_key(whole) if kind is NameKind.CONTEXT else whole
         place = self.lines.part(self.document.place(path, key=key), whole, 0, len(text))
@@ -211,13 +221,13 @@ class _Reader:
         yield self.use(kind, name, text, place, defining=defines(self.kind, path, kind))
 
     def row(self, path: NodePath) -> Iterator[NameUse]:
-        """Yield the names in a key of `hears`."""
+        """Yield the uses of phrases and answers in a key of `hears`."""
         key = str(path[-1])
         names = (NameInText(self.index.row_kind(name, self.scope), name, offset) for name, offset in names_in(key))
         yield from self.parts(path, key, names, key=True)
 
     def valued(self, kind: NameKind, path: NodePath, value: str) -> Iterator[NameUse]:
-        """Yield the names in a value of that kind."""
+        """Yield the uses of names in a value with names of that kind."""
         match kind:
             case NameKind.EXPRESSION:
                 yield from self.parts(path, value, in_expression(value))
@@ -232,7 +242,7 @@ class _Reader:
                 yield from self.named(kind, path)
 
     def parts(self, path: NodePath, value: str, parts: Iterator[NameInText], *, key: bool = False) -> Iterator[NameUse]:
-        """Yield the uses of names in parts of a text."""
+        """Yield the uses of names in `parts` of the text `value` at a path."""
         place = self.document.place(path, key=key)
         for part in parts:
             if part.kind is NameKind.STATE and not key:
@@ -241,7 +251,7 @@ class _Reader:
                 yield self.use(part.kind, part.text, part.text, here)
 
     def target(self, path: NodePath, value: str) -> Iterator[NameUse]:
-        """Yield the names in a target, or in a story's name of a state: each step of a dotted one is a state's name."""
+        """Yield the uses of states in a target or in a state's name in a story; each step of a dotted name is one."""
         if self.kind == "story":
             yield from self.segments(path, value, value, 0, self._named_state)
         elif self.outline:
@@ -257,7 +267,10 @@ class _Reader:
     def segments(
         self, path: NodePath, value: str, dotted: str, offset: int, find: Any, *, key: bool = False
     ) -> Iterator[NameUse]:
-        """Yield a name for each step of a dotted name that leads to a state; an id may contain dots itself."""
+        """Yield a use for each step of a dotted name that leads to a state; an id may contain dots itself.
+
+        `dotted` begins at `offset` in `value`; `find` returns a name's state or None.
+        """
         place, done = self.document.place(path, key=key), 0
         steps = dotted.split(".")
         for i in range(1, len(steps) + 1):
@@ -281,7 +294,7 @@ class _Reader:
             yield self.use(NameKind.STATE, _state_at(path), value, place)
 
     def use(self, kind: NameKind, name: str, text: str, place: Place, *, defining: bool = False) -> NameUse:
-        """Return a use of a name in the right scope."""
+        """Return a use of a name, with the scope in which the name is valid."""
         if kind in BODY_KINDS:
             scope = self.index.other_body(self.document.file)
         else:
@@ -318,7 +331,7 @@ def _state_at(path: NodePath) -> str:
 
 
 def _outline(file: str, document: Document) -> BehaviorOutline | None:
-    """Return the states of a behaviour that may have errors anywhere, None if they can't be determined."""
+    """Return the states of a behaviour's file, which may have errors; None if they can't be determined."""
     if kind_of(file) != "behavior":
         return None
     try:
@@ -328,7 +341,7 @@ def _outline(file: str, document: Document) -> BehaviorOutline | None:
 
 
 def _states(data: Any) -> dict[str, Any]:
-    """Return the parts of a state that the outline reads, if they have the right form."""
+    """Return the parts of a state's data that the outline reads; parts of a wrong form are left out."""
     known = data if isinstance(data, dict) else {}
     children, name, kind = known.get("states"), known.get("id"), known.get("type")
     state: dict[str, Any] = {}

@@ -1,7 +1,4 @@
-"""Checks a project in a separate process: Python runs one thread at a time, and answers must not wait for findings.
-
-This file contains both ends: the server's `Judge`, and `python -m lumen.features.editor.judging`, which it runs.
-"""
+"""Checks projects in a separate process: Python runs one thread at a time, and answers must not wait for findings."""
 
 import asyncio
 import os
@@ -19,9 +16,9 @@ COMMAND = (sys.executable, "-P", "-m", "lumen.features.editor.judging")
 
 
 class Judge:
-    """Checks one project at a time, and gives up on a text as soon as there is a newer one.
+    """Checks one project at a time in a process of its own, and ends a check as soon as there is a newer text.
 
-    The process starts with the first request, and again if a file has ended it.
+    The process starts with the first request, and again after a check that ended it.
     """
 
     def __init__(self) -> None:
@@ -30,7 +27,7 @@ class Judge:
         self._current = False
 
     async def judge(self, analysis: Analysis) -> Judgement | None:
-        """Return the findings of a project; None if a newer question came, or its files end the process."""
+        """Return the findings of a project; None if a newer request came during the check, or if the process ended."""
         self.outdated()
         self._current = True
         question = self._number, analysis
@@ -42,7 +39,7 @@ class Judge:
         return found
 
     def outdated(self) -> None:
-        """Give up on the text that is being checked."""
+        """End the check in progress, whose text is outdated."""
         self._number += 1
         if self._current:  # the process may still be reading the request, so the event loop must not wait for it
             self._current = False
@@ -58,7 +55,7 @@ class OutdatedError(Exception):
 
 
 class JudgingQuestions:
-    """The numbered requests of a server; `None` as a request makes those before it outdated."""
+    """The numbered requests of a server; one without an analysis only makes earlier requests outdated."""
 
     def __init__(self, pipe: AnswerPipe) -> None:
         self._pipe = pipe
@@ -66,7 +63,7 @@ class JudgingQuestions:
         self._waiting: SimpleQueue[tuple[int, Analysis]] = SimpleQueue()
 
     def answer(self) -> None:
-        """Answer until the server ends or closes the pipe, which ends this process at once."""
+        """Answer requests until the server ends or closes the pipe, which ends this process at once."""
         WatchedThread("questions", self._read).start()
         while True:
             self._pipe.answer(partial(self._judged, *self._waiting.get()))

@@ -1,4 +1,4 @@
-"""The server's side of the protocol: the open projects and their findings."""
+"""The language server: it keeps the open projects and publishes their findings."""
 
 import asyncio
 from collections.abc import Callable
@@ -48,15 +48,15 @@ class LanguageServer(pygls_server.LanguageServer):
         return ProtocolEncoder(analysis, self.workspace.position_codec)
 
     def analyses(self) -> list[Analysis]:
-        """Return the projects with an open file."""
+        """Return the analyses of the projects with an open file."""
         return [self.projects.analysis(root) for root in self.projects.roots()]
 
     def active(self, root: Path) -> tuple[str, ...]:
-        """Return the active states of a project's running exhibition."""
+        """Return the names of the active states of a project's running exhibition."""
         return self.running.active(root)
 
     def follow(self) -> None:
-        """Start to follow running exhibitions on a thread of its own."""
+        """Start a thread that follows running exhibitions."""
         self._loop = asyncio.get_running_loop()
         WatchedThread("exhibitions", self.running.follow).start()
 
@@ -75,14 +75,14 @@ class LanguageServer(pygls_server.LanguageServer):
             self.workspace_code_lens_refresh(None)
 
     def file(self, uri: str) -> tuple[Analysis, str] | None:
-        """Return project and file of a document; None if it belongs to no project."""
+        """Return the project and file of a document; None if the document belongs to no project."""
         try:
             return self.projects.at(Path(path_of(uri)))
         except LumenError:
             return None
 
     def at(self, uri: str, position: lsp.Position) -> tuple[Analysis, str, int, int] | None:
-        """Return project, file, line and column of a position; None if the file belongs to no project."""
+        """Return the project, file, line and column, from 1, of a position; None if the file belongs to no project."""
         if (found := self.file(uri)) is None:
             return None
         analysis, file = found
@@ -90,12 +90,12 @@ class LanguageServer(pygls_server.LanguageServer):
         return analysis, file, line, column
 
     def asked(self, params: Any, answer: Callable[[Analysis, str, int, int], T]) -> T | None:
-        """Return a service's answer about the requested position; None if the file belongs to no project."""
+        """Return what `answer` returns for the requested position; None if the file belongs to no project."""
         found = self.at(params.text_document.uri, params.position)
         return answer(*found) if found else None
 
     def written(self, uri: str, *, at_once: bool = False) -> None:
-        """Note the new text of an open file, and check its project once nothing is typed for a while."""
+        """Keep the new text of an open file, and check its project after a pause in typing, or now if `at_once`."""
         path = Path(path_of(uri))
         self.projects.write(path, self.workspace.get_text_document(uri).source)
         if root := root_of(path):
@@ -103,7 +103,7 @@ class LanguageServer(pygls_server.LanguageServer):
         self.check(path, at_once=at_once)
 
     def check(self, path: Path, *, at_once: bool = False) -> None:
-        """Check a file's project soon; a check in progress starts again."""
+        """Check a file's project after a pause in typing, or now if `at_once`; a check in progress starts again."""
         if (root := root_of(path)) is None:
             return
         self.judge(root).outdated()
@@ -116,14 +116,13 @@ class LanguageServer(pygls_server.LanguageServer):
         return self._judges.setdefault(root, Judge())
 
     def close(self) -> None:
-        """End the thread and the judges' processes."""
+        """End the thread that follows exhibitions, and the judges' processes."""
         self.running.close()
         for judge in self._judges.values():
             judge.close()
 
     async def settled(self, uri: str) -> tuple[Analysis, str] | None:
-        """Return project and file of a document, once typing has paused and the findings are published; None without a
-        project.
+        """Return the project and file of a document after its project has been checked; None if it belongs to none.
 
         Raises JsonRpcContentModified if the document changed meanwhile; the editor then repeats the request.
         """
@@ -154,8 +153,9 @@ class LanguageServer(pygls_server.LanguageServer):
                 await loop.run_in_executor(None, analysis.prepare)
 
     def _tell(self, root: Path, analysis: Analysis) -> None:
-        """Publish the findings file by file; open files without findings, and files that had some, get an empty
-        list.
+        """Publish the findings file by file.
+
+        Open files without findings, and files that had some before, get an empty list.
         """
         encoder, found = self.encoder(analysis), dict[str, list[lsp.Diagnostic]]()
         for diagnostic in analysis.diagnostics:

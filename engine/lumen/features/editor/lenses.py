@@ -14,7 +14,10 @@ ACTIVE_NOW = "● active now"
 
 
 class Lens(NamedTuple):
-    """A title above a place; `command` may be empty, `name` and `places` are its subject."""
+    """A title above a place; `command` may be empty.
+
+    `name` is the story, motion or state, `places` are those of the transitions to it.
+    """
 
     place: Place
     title: str

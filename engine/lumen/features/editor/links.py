@@ -10,14 +10,14 @@ from lumen.project.messages import SCHEMA_SUFFIX
 
 
 class FileLink(NamedTuple):
-    """The place of a file's name, and the file relative to the project's root."""
+    """The place of a name, and the file that it names, relative to the project's root."""
 
     place: Place
     target: str
 
 
 def links(analysis: Analysis, file: str) -> Iterator[FileLink]:
-    """Yield links to the existing files that are named in a file."""
+    """Yield links to the existing files of the project that are named in a file."""
     for use in analysis.index.uses:
         if use.place.file == file and use.text and (folder := KIND_FOLDERS.get(use.kind)):
             target = f"{folder}/{use.name}{SCHEMA_SUFFIX if use.kind is NameKind.MESSAGE else '.yaml'}"

@@ -1,4 +1,4 @@
-"""The exact places of names inside texts, however these are quoted, folded or escaped."""
+"""The exact places of names inside texts, which may be quoted, folded or escaped."""
 
 import re
 from collections.abc import Iterator
@@ -18,7 +18,7 @@ _NAMED = {"heard": NameKind.PHRASE, "lookup": NameKind.ANSWERS, "In": NameKind.S
 
 
 class NameInText(NamedTuple):
-    """A name within a text, with its offset in it."""
+    """A name within a text, at `offset` characters from the text's beginning."""
 
     kind: NameKind
     text: str
@@ -37,7 +37,10 @@ class DocumentText:
         return self._lines.offset(line, column)
 
     def part(self, place: Place, source: str, offset: int, length: int) -> Place | None:
-        """Return the place of a part of a scalar's value, None if the file contains it in another form."""
+        """Return the place of a part of the scalar at `place`; None if the file contains the part in another form.
+
+        The part has `length` characters from `offset` in the scalar's value `source`.
+        """
         start, end = self.offset(place.line, place.column), self.offset(place.end_line, place.end_column)
         raw, word = self.text[start:end], source[offset : offset + length]
         at = raw.find(source)
@@ -49,7 +52,7 @@ class DocumentText:
         return self.between(start + places[before], length) if word and before < len(places) else None
 
     def between(self, start: int, length: int) -> Place:
-        """Return the place of `length` characters in one line."""
+        """Return the place of `length` characters in one line from the offset `start`."""
         line, column = self._lines.line(start), self._lines.column(start)
         return Place(self.document.file, line, column, line, column + length)
 
@@ -70,7 +73,10 @@ def key_at(document: Document, line: int, column: int) -> NodePath:
 
 
 def in_expression(source: str, base: int = 0) -> Iterator[NameInText]:
-    """Yield the context keys, phrases, tables, states and functions in an expression; none if it is invalid."""
+    """Yield the context keys, phrases, tables, states and functions in an expression; none if it is invalid.
+
+    `base` is added to their offsets.
+    """
     yield from (name._replace(offset=base + name.offset) for name in _named(source))
 
 
@@ -107,7 +113,7 @@ def _signs(tokens: list[Token], at: int, sign: str) -> bool:
 
 
 def _last_text(tokens: list[Token], at: int) -> Token | None:
-    """Return the text literal that ends a call's arguments, None without one."""
+    """Return the text literal that ends a call's arguments, which begin at index `at`; None without one."""
     depth = 1
     while at < len(tokens) and depth:
         depth += (tokens[at].text in ("(", "[", "{")) - (tokens[at].text in (")", "]", "}"))

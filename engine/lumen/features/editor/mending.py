@@ -11,7 +11,7 @@ from lumen.language.text_lines import lines_of
 from lumen.project.yaml_reader import parse
 
 MAX_CUTS = 8
-"""The number of lines that are removed one by one before whole blocks are."""
+"""The number of faulty lines that are removed with the blocks below them before enclosing blocks are."""
 
 _WORD = re.compile(r"[^\s\"'`\[\]{},:#]+")
 _QUOTED = re.compile(r"""(?:^|(?<=[\s\[{,:(]))(?P<text>"(?:[^"\\]|\\.)*(?:"|$)|'(?:[^']|'')*(?:'|$))|(?:^|\s)\#.*""")
@@ -25,11 +25,11 @@ class MendedText(NamedTuple):
     words: frozenset[str]
     """The words in the removed lines."""
     around: frozenset[int]
-    """The lines whose content depends on the removed ones: those that contain them."""
+    """The indices of the lines whose blocks contain a removed line."""
 
 
 def mended(file: str, text: str) -> MendedText | None:
-    """Return the text without the lines that prevent reading it; None if nothing helps."""
+    """Return the text without the lines that prevent reading it; None if removing lines does not help."""
     lines, cut = lines_of(text), set[int]()
     first: int | None = None
     for _ in range(MAX_CUTS):
@@ -46,7 +46,7 @@ def mended(file: str, text: str) -> MendedText | None:
 
 
 def open_quote(line: str) -> bool:
-    """Return whether a quote is opened in a line and not closed there."""
+    """Return True if a quote is opened in a line and not closed there."""
     return any(
         len(text) == 1 or text[0] != text[-1] or text.endswith('\\"')
         for found in _QUOTED.finditer(line)

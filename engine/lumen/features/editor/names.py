@@ -1,4 +1,4 @@
-"""A name in a project's file: the kind of thing that it names, the thing, and its exact place."""
+"""The uses of names in a project's files, and the kinds of things that they name."""
 
 from enum import StrEnum
 from typing import NamedTuple
@@ -72,21 +72,21 @@ class NameUse(NamedTuple):
 
     kind: NameKind
     scope: str
-    """The file in which the name is valid, empty for the whole project."""
+    """The behaviour or file in which the name is valid; empty for the whole project."""
     name: str
     """The thing's name; for a state its path, however it is written."""
     text: str
-    """The name as it is written."""
+    """The name as it is written; empty if it is not written in the project."""
     place: Place
     defines: bool = False
-    """Whether this use defines the thing."""
+    """True if this use defines the thing."""
 
     @property
     def thing(self) -> tuple[NameKind, str, str]:
-        """The values that all uses of one thing's name share."""
+        """The kind, scope and name of the thing, which all uses of its name share."""
         return self.kind, self.scope, self.name
 
 
 def covers(place: Place, line: int, column: int) -> bool:
-    """Return whether a cursor at that line and column, from 1, is in the place or directly behind it."""
+    """Return True if a cursor at that line and column, from 1, is in the place or directly behind it."""
     return (place.line, place.column) <= (line, column) <= (place.end_line, place.end_column)

@@ -9,7 +9,7 @@ from lumen.project.project_folders import MAIN_FILE, kind_of
 
 
 class OpenProjects:
-    """Keeps the unsaved texts by path; the analysis of a project is kept until something in it changes."""
+    """The unsaved texts by path, and the projects' analyses, each of which is kept until one of its files changes."""
 
     def __init__(self) -> None:
         self._texts: dict[Path, str] = {}
@@ -27,14 +27,14 @@ class OpenProjects:
         self.forget(path)
 
     def forget(self, path: Path) -> None:
-        """Discard the analysis of a changed file's project."""
+        """Discard the analysis of a changed file's project, except as the earlier one of the next."""
         if root := root_of(path):
             last = self._analyses.pop(root, None)
             if last is not None:
                 self._before[root] = last
 
     def analysis(self, root: Path) -> Analysis:
-        """Return the present analysis of the project in that folder."""
+        """Return the analysis of the project in that folder with its unsaved texts."""
         if root not in self._analyses:
             files = read_files(root)
             for path, text in self._texts.items():
@@ -49,7 +49,10 @@ class OpenProjects:
         return list(dict.fromkeys(root for path in list(self._texts) if (root := root_of(path))))
 
     def at(self, path: Path) -> tuple[Analysis, str]:
-        """Return the project of a file, and the file's name in it. Raises UsageError if it belongs to none."""
+        """Return the project of a file, and the file's path in it.
+
+        Raises UsageError if the file belongs to no project.
+        """
         root = root_of(path)
         if root is None:
             raise UsageError(f"{path} is in no project: no folder above it has a {MAIN_FILE}")

@@ -60,7 +60,7 @@ class ProtocolEncoder:
         return lsp.Location(self.uri(place.file), self.ranges(place.file).range(place))
 
     def diagnostic(self, found: Diagnostic) -> lsp.Diagnostic:
-        """Return a finding with its hint, its rule's code, and related places."""
+        """Return a finding as the protocol's diagnostic, with its hint, its rule's code, and related places."""
         related = [lsp.DiagnosticRelatedInformation(self.location(r.place), r.message) for r in found.related]
         return lsp.Diagnostic(
             self.ranges(found.place.file).range(found.place),
@@ -72,7 +72,7 @@ class ProtocolEncoder:
         )
 
     def item(self, item: Item, file: str, line: int, column: int, order: int) -> lsp.CompletionItem:
-        """Return a proposal that replaces the part of it that is already typed; `order` is its rank."""
+        """Return the completion item of a proposal at a line and column, from 1; `order` is its rank."""
         place = Place(file, line, column - item.replaces, line, column)
         icon = lsp.CompletionItemKind.Property if item.detail == "key" else lsp.CompletionItemKind.Reference
         return lsp.CompletionItem(
@@ -86,7 +86,7 @@ class ProtocolEncoder:
         )
 
     def symbol(self, symbol: Symbol) -> lsp.DocumentSymbol:
-        """Return a symbol with its children."""
+        """Return the protocol's symbol, with its children."""
         ranges = self.ranges(symbol.place.file)
         return lsp.DocumentSymbol(
             symbol.name,
@@ -98,7 +98,7 @@ class ProtocolEncoder:
         )
 
     def edits(self, edits: Iterable[Edit]) -> list[lsp.TextDocumentEdit | lsp.RenameFile]:
-        """Return the edits, grouped by file."""
+        """Return the protocol's edits of documents, grouped by file."""
         gathered: dict[str, list[lsp.TextEdit | lsp.AnnotatedTextEdit | lsp.SnippetTextEdit]] = {}
         for edit in edits:
             change = lsp.TextEdit(self.ranges(edit.place.file).range(edit.place), edit.text)
@@ -109,7 +109,7 @@ class ProtocolEncoder:
         ]
 
     def renaming(self, renaming: Renaming) -> lsp.WorkspaceEdit:
-        """Return the edits with the files' present names, then the renaming of the file, if any."""
+        """Return the protocol's edits: first those of the files by their present names, then the file's renaming."""
         changes = self.edits(renaming.edits)
         if renaming.moved:
             old, new = renaming.moved

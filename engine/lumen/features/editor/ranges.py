@@ -1,5 +1,6 @@
-"""Converts between Lumen's places (lines and columns of characters, from 1) and the protocol's (from 0, in the client's
-units).
+"""Converts between Lumen's places and the protocol's positions.
+
+Lumen counts lines and columns of characters from 1, the protocol from 0, with columns in the client's units.
 """
 
 from urllib.parse import unquote, urlsplit
@@ -13,7 +14,7 @@ from lumen.lint.fixes import FileText
 
 
 class Ranges:
-    """The places of one file in the client's units of columns, by default UTF-16."""
+    """Converts the places of one file; `codec` counts columns in the client's units, by default UTF-16."""
 
     def __init__(self, text: FileText, codec: PositionCodec) -> None:
         self._text, self._codec = text, codec
@@ -27,12 +28,12 @@ class Ranges:
         return lsp.Position(line - 1, self._codec.client_num_units(before))
 
     def range(self, place: Place) -> lsp.Range:
-        """Return the protocol's range of a place."""
+        """Return the protocol's range of a place; it is empty if the place ends before it begins."""
         start, end = self.position(place.line, place.column), self.position(place.end_line, place.end_column)
         return lsp.Range(start, max(start, end, key=lambda p: (p.line, p.character)))
 
     def place(self, position: lsp.Position) -> tuple[int, int]:
-        """Return line and column, from 1, of a client's position."""
+        """Return the line and column, from 1, of a client's position."""
         text = self._text.line(position.line + 1)
         units, column = 0, 0
         while column < len(text) and units < position.character:

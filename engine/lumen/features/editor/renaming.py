@@ -60,9 +60,10 @@ def renamable(analysis: Analysis, file: str, line: int, column: int) -> NameUse 
 
 
 def rename(analysis: Analysis, use: NameUse, name: str) -> Renaming:
-    """Return the renaming of the thing that a use names. Raises UsageError if the new name is invalid or taken.
+    """Return the renaming of the thing that a use names.
 
-    A state keeps an `id` that differs from its key. Errors that the renaming causes are left to `refuse_harm`.
+    A state keeps an `id` that differs from its key. Raises UsageError if the new name is invalid or taken, if the thing
+    must keep its name, or if a file is invalid YAML. Errors that the renaming causes are left to `refuse_harm`.
     """
     if analysis.broken:
         said = next(d for each in analysis.broken.values() for d in each.diagnostics)
@@ -90,7 +91,7 @@ def rename(analysis: Analysis, use: NameUse, name: str) -> Renaming:
 
 
 def applied(analysis: Analysis, renaming: Renaming) -> Analysis:
-    """Return the project after a renaming."""
+    """Return the analysis of the project after a renaming."""
     files = dict(analysis.files)
     for file in {edit.place.file for edit in renaming.edits}:
         files[file] = edited(files[file], [edit for edit in renaming.edits if edit.place.file == file])

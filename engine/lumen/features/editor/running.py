@@ -10,11 +10,13 @@ from lumen.run.asking import OPERATOR_ANSWERS, operator_key, send_request
 from lumen.run.reaching import Reached, reach_exhibition, runs_here
 
 ASK_EVERY, ANSWER_TIMEOUT = 1.0, 2.0
-"""The time between two requests for an exhibition's states, and the time it may take to answer [s]."""
+"""The time between two requests for the exhibitions' states, and the maximum wait for an answer [s]."""
 
 
 class RunningExhibitions:
-    """Requests the states in a thread of its own, and calls `changed` with the folder of a project whose states
+    """Requests the active states of the open projects' running exhibitions.
+
+    `roots` returns the projects' folders; `changed` is called with a folder whenever its exhibition's states have
     changed.
     """
 
@@ -29,7 +31,7 @@ class RunningExhibitions:
         return self._active.get(root, ())
 
     def follow(self) -> None:
-        """Request the states until `close` is called."""
+        """Request the states of all exhibitions repeatedly until `close` is called."""
         while not self._over.wait(ASK_EVERY):
             for root in list(self._roots()):
                 states = self._asked(root)
@@ -40,7 +42,7 @@ class RunningExhibitions:
             reached.bus.close()
 
     def close(self) -> None:
-        """End `follow`."""
+        """End `follow` at its next round."""
         self._over.set()
 
     def _asked(self, root: Path) -> tuple[str, ...]:

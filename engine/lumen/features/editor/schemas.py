@@ -19,7 +19,7 @@ def _root(kind: str, verbs: OwnVerbs) -> Mapping[str, Any]:
 
 
 def schemas_at(kind: str, path: NodePath, verbs: OwnVerbs = NO_VERBS) -> list[Mapping[str, Any]]:
-    """Return all schemas that apply to the node at a path in any branch, the nearest first.
+    """Return all schemas that may apply to the node at a path, whichever branches are chosen, the nearest first.
 
     `verbs` are those that the project declares.
     """
@@ -41,7 +41,7 @@ def keys_at(kind: str, path: NodePath, verbs: OwnVerbs = NO_VERBS) -> dict[str, 
 
 
 def values_at(kind: str, path: NodePath, verbs: OwnVerbs = NO_VERBS) -> list[str]:
-    """Return the values that the schemas of a node list, as written in YAML."""
+    """Return the values that the schemas list for the node at a path, as written in YAML."""
     values: list[str] = []
     for schema in schemas_at(kind, path, verbs):
         values += map(_written, schema.get("enum", ()))
@@ -51,7 +51,7 @@ def values_at(kind: str, path: NodePath, verbs: OwnVerbs = NO_VERBS) -> list[str
 
 
 def description_at(kind: str, path: NodePath, verbs: OwnVerbs = NO_VERBS) -> str:
-    """Return the schemas' description of a node, with its default."""
+    """Return the schemas' description of a node, with its default; empty without one."""
     schemas = schemas_at(kind, path, verbs)
     text = next((s["description"] for s in schemas if "description" in s), "")
     default = next((s["default"] for s in schemas if "default" in s), None)
@@ -63,7 +63,7 @@ def _written(value: Any) -> str:
 
 
 def _here(schema: Any, root: Mapping[str, Any], depth: int = 0) -> Iterator[Mapping[str, Any]]:
-    """Yield the schema and all schemas that it combines."""
+    """Yield a schema, and all schemas that it combines or refers to."""
     if not isinstance(schema, dict) or depth > 8:
         return
     yield schema

@@ -1,4 +1,4 @@
-"""Sample sentences in hover texts, for a row of `hears` or a phrase, with the values that they give."""
+"""Sample sentences in hover texts, for a row of `hears` or a phrase, with the values of `heard` that they set."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import islice
@@ -17,7 +17,7 @@ from lumen.talk.patterns import forms, slots_of
 from lumen.talk.sample_sentences import SampleSentence, of_phrase, of_row
 
 MAX_SENTENCES, MAX_TRIED = 4, 40
-"""The number of sentences that are shown for a row or a phrase, and the number that are tried."""
+"""The maximum number of sentences that are shown for a row or phrase, and of those that are tried for a row."""
 _TAKEN = {
     "": "taken if one of its phrases is said",
     "not": "taken if the visitor refuses it",
@@ -42,14 +42,14 @@ def of_row_at(analysis: Analysis, file: str, line: int, column: int) -> str:
 
 
 def of_patterns(draft: ProjectDraft, phrases: Iterable[str]) -> Iterator[str]:
-    """Yield a line with a sentence for each of the first phrases that are patterns."""
+    """Yield a line with a sample sentence for each of the first phrases that are patterns."""
     patterns = (text for text in phrases if len(forms(text)) > 1 or any(slots_of(text)))
     sentences = (next(of_phrase(text, _lists(draft)), None) for text in patterns)
     yield from _listed(islice(filter(None, sentences), MAX_SENTENCES))
 
 
 def of_phrase_at(analysis: Analysis, file: str, path: NodePath) -> str:
-    """Return sentences that contain the phrase at a path."""
+    """Return sample sentences with the phrase at a path; empty if it is no text."""
     text = analysis.documents[file].value(path)
     if not isinstance(text, str):
         return ""

@@ -21,18 +21,18 @@ class RefusalFilter(logging.Filter):
     """Keeps refusals out of the log, where pygls writes a traceback of every exception."""
 
     def filter(self, record: logging.LogRecord) -> bool:
-        """Return whether the record is anything but a refusal."""
+        """Return True if the record is anything but a refusal."""
         return not (record.exc_info and isinstance(record.exc_info[1], _REFUSALS))
 
 
 def quiet() -> None:
-    """Log errors only."""
+    """Log only errors of pygls, and no refusals."""
     logging.getLogger("pygls").setLevel(logging.ERROR)
     logging.getLogger("pygls.protocol.json_rpc").addFilter(RefusalFilter())
 
 
 SWITCH_INTERVAL = 0.001
-"""The longest time that a check may delay an answer [s]."""
+"""The interval of Python's switches between threads, the longest delay of an answer by a check [s]."""
 
 _log = logging.getLogger(__name__)
 

@@ -15,7 +15,7 @@ _TEXT = re.compile(r"'(?:[^'\\]|\\.)*'|\"(?:[^\"\\]|\\.)*\"")
 
 
 class FunctionSignature(NamedTuple):
-    """A function's signature."""
+    """The signature of a called function."""
 
     name: str
     parameters: tuple[str, ...]

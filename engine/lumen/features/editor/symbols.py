@@ -12,7 +12,7 @@ from lumen.project.project_folders import kind_of
 
 
 class Symbol(NamedTuple):
-    """A defined thing."""
+    """A thing that a file defines."""
 
     name: str
     kind: NameKind
@@ -24,7 +24,7 @@ class Symbol(NamedTuple):
 
 
 def symbols(analysis: Analysis, file: str) -> tuple[Symbol, ...]:
-    """Return the symbols of a file in its order; none if it is unreadable."""
+    """Return the symbols of a file in its order; none if the file is unreadable."""
     document = analysis.documents.get(file)
     return _below(document, kind_of(file), ()) if document else ()
 

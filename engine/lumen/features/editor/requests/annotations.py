@@ -9,8 +9,9 @@ CALLS = lsp.SignatureHelpOptions(trigger_characters=["(", ","])
 
 
 async def lens(server: LanguageServer, params: lsp.CodeLensParams) -> list[lsp.CodeLens]:
-    """Return lenses with their commands; the arguments are the project's folder and a name, or a place and related
-    places.
+    """Return lenses with their commands.
+
+    The arguments are the project's folder and a name; or a document, a position and related places.
     """
     uri = params.text_document.uri
     if (found := await server.settled(uri)) is None:
@@ -27,7 +28,7 @@ async def lens(server: LanguageServer, params: lsp.CodeLensParams) -> list[lsp.C
 
 
 async def hint(server: LanguageServer, params: lsp.InlayHintParams) -> list[lsp.InlayHint]:
-    """Return the inlay hints in a range of lines."""
+    """Return the inlay hints in the requested lines of a document."""
     if (found := await server.settled(params.text_document.uri)) is None:
         return []
     ranges = server.encoder(found[0]).ranges(found[1])

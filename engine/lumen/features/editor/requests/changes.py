@@ -26,8 +26,9 @@ def prepare(server: LanguageServer, params: lsp.PrepareRenameParams) -> lsp.Prep
 
 
 async def rename(server: LanguageServer, params: lsp.RenameParams) -> lsp.WorkspaceEdit | None:
-    """Return the edits of a renaming. Raises JsonRpcInvalidParams if the project would have more findings after
-    them.
+    """Return the edits of a renaming; None if the file belongs to no project.
+
+    Raises JsonRpcInvalidParams if the renaming is impossible or causes findings.
     """
     await server.settled(params.text_document.uri)
     if (found := server.at(params.text_document.uri, params.position)) is None:
@@ -47,7 +48,7 @@ async def rename(server: LanguageServer, params: lsp.RenameParams) -> lsp.Worksp
 
 
 async def repair(server: LanguageServer, params: lsp.CodeActionParams) -> list[lsp.CodeAction]:
-    """Return the fixes of the findings in a range."""
+    """Return the fixes of a document's findings in a range."""
     if (found := await server.settled(params.text_document.uri)) is None:
         return []
     analysis, file = found

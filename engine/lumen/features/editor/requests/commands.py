@@ -1,4 +1,4 @@
-"""The lenses' commands for editors without a terminal of their own: run a process and show the end of its output."""
+"""The lenses' commands, for editors without a terminal: they run a process and show the end of its output."""
 
 import asyncio
 import sys
@@ -10,21 +10,21 @@ from lumen.features.editor.language_server import LanguageServer
 from lumen.features.editor.ranges import path_of
 
 MAX_TOLD = 2_000
-"""The number of characters of a process's output that are shown."""
+"""The maximum number of characters of a process's output that are shown, from its end."""
 
 
 async def run_story(server: LanguageServer, root: str, name: str) -> bool:
-    """Run a story and show the result; return whether it passed."""
+    """Run a story of the project at the URI `root` and show the result; return True if it passed."""
     return await _performed(server, root, "test", name)
 
 
 async def play_motion(server: LanguageServer, root: str, name: str) -> bool:
-    """Play a motion on the simulated robot and show the result; return whether it succeeded."""
+    """Play a motion on the simulated robot and show the result; return True if it succeeded."""
     return await _performed(server, root, "play", name)
 
 
 def show_places(server: LanguageServer, uri: str, position: lsp.Position, places: list[lsp.Location]) -> None:
-    """Do nothing: editors list the places themselves; in others the title shows their number."""
+    """Do nothing: some editors list the places themselves; in others the lens's title already shows their number."""
 
 
 async def _performed(server: LanguageServer, root: str, verb: str, name: str) -> bool:

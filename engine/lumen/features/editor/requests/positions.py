@@ -1,4 +1,4 @@
-"""Requests about a position: completion, hover, definition and uses."""
+"""Requests about a position: completion, hover, definitions, uses and highlights."""
 
 from collections.abc import Callable
 from typing import Any
@@ -41,7 +41,7 @@ def refer(server: LanguageServer, params: lsp.ReferenceParams) -> list[lsp.Locat
 
 
 def highlight(server: LanguageServer, params: lsp.DocumentHighlightParams) -> list[lsp.DocumentHighlight]:
-    """Return every use of a name in its file, marked as a definition or a use."""
+    """Return every use in the document of the name at a position; definitions are marked as written, others as read."""
 
     def marks(analysis: Analysis, file: str, line: int, column: int) -> list[lsp.DocumentHighlight]:
         use, ranges = analysis.index.at(file, line, column), server.encoder(analysis).ranges(file)

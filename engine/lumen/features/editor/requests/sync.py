@@ -14,7 +14,7 @@ def begun(server: LanguageServer, params: lsp.InitializedParams) -> None:
 
 
 def ended(server: LanguageServer, params: None) -> None:
-    """Close the server."""
+    """End the server's thread and processes."""
     server.close()
 
 
@@ -41,7 +41,7 @@ def closed(server: LanguageServer, params: lsp.DidCloseTextDocumentParams) -> No
 
 
 def touched(server: LanguageServer, params: lsp.DidChangeWatchedFilesParams) -> None:
-    """Read the changed files again, and check their projects."""
+    """Check the projects of files that changed on disk."""
     for change in params.changes:
         path = Path(path_of(change.uri))
         server.projects.forget(path)
