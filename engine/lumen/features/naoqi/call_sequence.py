@@ -12,12 +12,12 @@ CANCEL_TIMEOUT = 1.5
 """The time for which a cancelled command may continue [s]: a walk ends after the step in the air."""
 
 ABORT_RETRY_PERIOD = 0.25
-"""The time between two repetitions of the abort [s]: NAOqi may receive the end before the beginning."""
+"""The time between two repetitions of the abort [s]: NAOqi may have received an abort before the command itself."""
 
 
 @dataclass(frozen=True)
 class WhileWaiting:
-    """Waits for a call, and calls a function at each tick meanwhile."""
+    """Waits for a call, and calls `each` with the time [s] at every tick until the call has ended."""
 
     call: NaoqiCall
     each: Callable[[float], None]
@@ -29,10 +29,11 @@ CallSteps = Generator[Awaited, Any, Any]
 
 
 class CallSequence:
-    """An activity of the executor made of steps.
+    """An activity of the executor that consists of steps, each of which waits for a call.
 
-    `abort` makes NAOqi end it; `recover` are the steps afterwards. If it has not ended within `patience` [s] after it
-    was cancelled, it has failed, so that nothing waits for it forever.
+    `abort` returns calls that make NAOqi end the command; `recover` returns the steps afterwards. If NAOqi has not
+    ended the command within `patience` [s] after it was cancelled, the command fails, so that nothing waits for it
+    forever.
     """
 
     def __init__(
@@ -67,7 +68,10 @@ class CallSequence:
             self._aborting = list(self._abort())
 
     def _quiet(self, now: float) -> bool:
-        """Return whether NAOqi has ended the command. Raises RobotError after `patience`."""
+        """Return True if NAOqi has ended the cancelled command; repeat the abort until then.
+
+        Raises RobotError after `patience`.
+        """
         if self._until == inf:
             self._until, self._again = now + self._patience, now + ABORT_RETRY_PERIOD
         call = self._wait.call if isinstance(self._wait, WhileWaiting) else self._wait

@@ -14,7 +14,7 @@ from lumen.motion.trajectories import Bezier, JointTrack, Polynomial, Segment
 MOTION_CYCLE = 0.02
 """ALMotion's period [s]."""
 MAX_CURVE_ERROR = 1e-3
-"""The greatest deviation of a joint from a minimum-jerk track [rad]."""
+"""The maximum deviation of a joint from a minimum-jerk track [rad]."""
 MIN_PIECE_DURATION = 2 * MOTION_CYCLE
 """The shortest piece [s]."""
 BEZIER_HANDLE = 3
@@ -22,7 +22,7 @@ BEZIER_HANDLE = 3
 
 
 class CubicPiece(NamedTuple):
-    """A cubic Bezier curve, whose points have the angles `a0` to `a3` [rad]."""
+    """A cubic Bezier curve of the given duration [s], whose points have the angles `a0` to `a3` [rad]."""
 
     start: float
     """The time of its beginning [s]."""
@@ -38,7 +38,7 @@ class CubicPiece(NamedTuple):
 
 
 class BezierCurves(NamedTuple):
-    """The three arguments of `angleInterpolationBezier`."""
+    """The three arguments of `angleInterpolationBezier`: joints, their times [s], and their control points."""
 
     names: list[str]
     times: list[list[float]]
@@ -46,10 +46,11 @@ class BezierCurves(NamedTuple):
 
 
 def curves(tracks: Iterable[JointTrack]) -> BezierCurves:
-    """Return these tracks for NAOqi, which begins each at the joint's present angle; the track should begin there too.
+    """Return these tracks in NAOqi's form.
 
-    The handle that NAOqi gives to that beginning is not documented. So the first key is one of its cycles later, on the
-    way, and the movement before it is too short to be visible.
+    NAOqi begins each at the joint's present angle, so the track should begin there too. The handle that NAOqi gives to
+    that beginning is not documented. Therefore the first key lies on the track one cycle of ALMotion later, and the
+    movement before it is too short to be visible.
     """
     found = BezierCurves([], [], [])
     for track in tracks:
@@ -76,8 +77,9 @@ def _pieces(segment: Segment) -> Iterator[CubicPiece]:
 
 
 def _cubics(curve: Polynomial) -> Iterator[CubicPiece]:
-    """Yield the polynomial in pieces with its own angles and speeds at their ends; one suffices up to the third
-    degree.
+    """Yield cubic pieces that have the polynomial's angles and speeds at their ends.
+
+    One piece is exact for a polynomial up to the third degree.
     """
     most = max(1, int(curve.duration / MIN_PIECE_DURATION))
     way = abs(curve.c5) / 6
@@ -121,7 +123,7 @@ def _halves(u: float, p0: float, p1: float, p2: float, p3: float) -> tuple[Contr
 
 
 def _reached(piece: CubicPiece, time: float) -> float:
-    """Return the parameter at which the curve reaches that time [s] from its beginning."""
+    """Return the parameter from 0 to 1 at which the curve reaches that time [s] after its beginning, by bisection."""
     low, high = 0.0, 1.0
     for _ in range(50):
         u = (low + high) / 2

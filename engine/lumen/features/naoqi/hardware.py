@@ -1,4 +1,4 @@
-"""NAOqi's names of the devices of NAO and Pepper. Pepper's names are from memory, not tested."""
+"""NAOqi's names of the devices of NAO and Pepper. Those of Pepper have not been tested on a robot."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -43,11 +43,11 @@ class Hardware:
     breathing: tuple[str, ...]
     """The chains, besides the head, that NAOqi's breathing moves."""
     edge: str
-    """The part that leaves the stage first."""
+    """The name of the part that leaves the stage first, for messages."""
     reach: float
     """The distance of that part from the robot's position [m]."""
     gets_up: bool
-    """Whether the robot gets up by itself after a fall."""
+    """True if the robot gets up by itself after a fall."""
 
 
 _HEAD_TOUCH = {
@@ -105,7 +105,7 @@ PEPPER = Hardware(
     reach=0.25,
     gets_up=False,
 )
-"""Its only sonar that points ahead serves as both the left and the right one."""
+"""Pepper's only sonar that points ahead serves as both the left and the right one."""
 
 
 def hardware_of(body: Body) -> Hardware:

@@ -1,5 +1,6 @@
-"""Lifelike movements of a real NAO: head and arms by `ALMotion.setAngles`, its eyes, and NAOqi's own if the style has
-them.
+"""Lifelike movements of a real NAO or Pepper.
+
+Lumen moves the joints by `ALMotion.setAngles` and lights the eyes; NAOqi breathes and blinks if the style selects it.
 """
 
 from collections.abc import Callable, Collection, Mapping
@@ -22,8 +23,9 @@ from lumen.robot.command_table import speech_duration
 from lumen.robot.life_layer import LifeLayer
 
 OURS_AFTER = 0.5
-"""The time after a light command in which the eyes stay untouched [s], because the command's calls may still be on
-their way.
+"""The time after a light command in which the eyes stay untouched [s].
+
+The command's calls may still be on their way.
 """
 
 UNLIT = "white"
@@ -49,7 +51,10 @@ class NaoqiEyes:
                     self._light(cue.value, now + cue.time)
 
     def wear(self, colour: str, now: float) -> None:
-        """Show this colour in the eyes, `off` for a blink, white for an empty text, unless a command has lit them."""
+        """Show this colour in the eyes, `off` for a blink, white for an empty text, unless a command has lit them.
+
+        A colour is skipped while NAOqi has not answered the last call.
+        """
         colour = colour or UNLIT
         if self._lit or now < self._lit_until or colour == self._worn or not self._sent.done:
             return
@@ -67,17 +72,18 @@ SEND_PERIOD = 0.1
 """The time between two updates of the joints' goals [s]; NAOqi interpolates in between."""
 
 SPEED = 0.3
-"""The share of their greatest speed at which joints move to these goals."""
+"""The share of their maximum speed at which joints move to these goals."""
 
 REST_AFTER = 0.5
 """The time without commands after which the robot moves by itself again [s]: NAOqi finishes late."""
 
 
 class NaoqiLife:
-    """Adds the life layer's offsets to the angles of head and arms after the last command.
+    """Adds the life layer's offsets to the angles of joints after the last command.
 
     Legs stay still unless the style has `naoqi: [legs]`, because swaying has not been tested on a real robot. The robot
-    lives from its first command to stand until it rests. `owner` returns the command that moves a part.
+    makes these movements from its first command to stand until it rests. `owner` returns the id of the command that
+    moves a part, empty if none does.
     """
 
     def __init__(self, session: NaoqiSession, owner: Callable[[str], str], body: Body) -> None:
@@ -94,11 +100,11 @@ class NaoqiLife:
 
     @property
     def body_language(self) -> bool:
-        """Whether NAOqi makes the gestures of speech."""
+        """True if NAOqi makes the gestures of speech."""
         return self._has(NAOQI_SPEECH, "ALAnimatedSpeech")
 
     def live(self, command: Live) -> None:
-        """Begin a style of life."""
+        """Begin a style of life; if NAOqi makes the gestures of speech, Lumen makes none."""
         self.layer.live(replace(command, gestures=NO_GESTURES) if NAOQI_SPEECH in command.style.naoqi else command)
 
     def begins(self, command: RobotCommand, now: float) -> None:
@@ -124,11 +130,14 @@ class NaoqiLife:
         self._stands |= {joint: angle for joint, angle in angles.items() if joint in self._stands}
 
     def alive(self, angles: Mapping[str, float]) -> dict[str, float]:
-        """Return the angles to send for joints that are aimed there [rad]: with their offsets added."""
+        """Return the angles [rad] to send for joints that are aimed at `angles`: with their offsets added."""
         return {joint: angle + self.layer.offsets.get(joint, 0.0) for joint, angle in angles.items()}
 
     def tick(self, now: float, heat: Mapping[str, float], percentage: float) -> None:
-        """Send the joints' goals at `now` [s], unless NAOqi is still busy with the last."""
+        """Send the joints' goals at `now` [s], unless NAOqi is still busy with the last.
+
+        `heat` has the motors' temperatures [degrees Celsius], `percentage` is the battery's charge.
+        """
         free = frozenset(part for part in WHOLE_BODY if not self._owner(part))
         if not self._owner(VOICE):
             self.layer.hush(now)
@@ -171,7 +180,7 @@ class NaoqiLife:
             self._eyes.wear(colour, now)
 
     def _switch(self, *, lives: bool) -> None:
-        """Switch NAOqi's breathing and blinking; it breathes only while no command moves the robot."""
+        """Switch NAOqi's breathing and blinking by the style; it breathes only if `lives`, while no command runs."""
         breathes = lives and NAOQI_BREATHING in self.layer.style.naoqi
         if breathes != self._breathes:
             self._breathes = breathes
@@ -186,7 +195,7 @@ class NaoqiLife:
         return part in self.layer.style.naoqi and self._session.has(service)
 
     def _known(self) -> bool:
-        """Return whether the joints' angles without offsets are known; request them if not."""
+        """Return True if the joints' angles without offsets are known; request them if not."""
         if self._stands:
             return True
         if self._asked is None:

@@ -17,7 +17,10 @@ CUE_FADE = 0.05
 
 
 def fades(colours: object, body: Body, seconds: float = CUE_FADE) -> Iterator[tuple[str, int, float]]:
-    """Yield the arguments of `ALLeds.fadeRGB` (group, 0xRRGGBB, [s]) for each light; lights it lacks are skipped."""
+    """Yield the arguments of `ALLeds.fadeRGB` (group, 0xRRGGBB, [s]) for each light.
+
+    Lights that the robot lacks, and colours that are unknown, are skipped.
+    """
     groups = hardware_of(body).lights
     for light, colour in colours.items() if isinstance(colours, Mapping) else ():
         shown = NAOQI_COLOURS.get(colour, rgb(colour))

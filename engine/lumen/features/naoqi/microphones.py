@@ -26,14 +26,15 @@ class Microphones:
         self._heard, self._wanted = bytearray(), 0
 
     def begin(self, command: Record) -> CallSequence:
-        """Begin a recording. Raises RobotError if there is no microphone."""
+        """Return the activity of a recording. Raises SenseError if there is no microphone."""
         if not self._session.has(AUDIO_DEVICE):
             raise SenseError(f"this robot has no {AUDIO_DEVICE}")
         return CallSequence(self._listen(command), self._hush)
 
     def _listen(self, command: Record) -> CallSteps:
-        """Record: NAOqi calls `processRemote` of Lumen's service about six times a second; earlier sound is
-        discarded.
+        """Record: NAOqi calls `processRemote` of Lumen's service with sound about six times a second.
+
+        Sound that arrives before the recording begins is discarded.
         """
         yield self._session.serve(MICROPHONE_SERVICE, self._service)
         yield self._session.post(

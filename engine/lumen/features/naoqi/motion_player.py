@@ -17,7 +17,7 @@ from lumen.robot.joint_ways import APPROACH_TIME, RECOVERY_TIME, away, begun_fro
 
 
 class CuePlayer:
-    """Plays the cues of a motion, each at its time."""
+    """Plays the cues of a motion, each at its time; `post` lights the LEDs, `notice` receives words and sounds."""
 
     def __init__(self, post: PostCall, motion: MotionDefinition, body: Body, notice: EventSink) -> None:
         self._post, self._body = post, body
@@ -41,15 +41,19 @@ START_POSTURE_TOLERANCE = 0.1
 
 
 class MotionPlayer:
-    """Begins motions; `post` calls NAOqi, `notice` receives a motion's words and sounds, `clock` returns the time
-    [s].
+    """Begins motions by calls of NAOqi.
+
+    `post` calls NAOqi, `notice` receives a motion's words and sounds, and `clock` returns the time [s].
     """
 
     def __init__(self, post: PostCall, body: Body, notice: EventSink, clock: Callable[[], float]) -> None:
         self._post, self._body, self._notice, self._clock = post, body, notice, clock
 
     def begin(self, motion: MotionDefinition, owned: Collection[str]) -> CallSequence:
-        """Begin a motion; joints of the parts `owned` may be moved to its starting posture before and after."""
+        """Return the activity of a motion.
+
+        Joints of the parts `owned` may be moved to the motion's starting posture before and after it.
+        """
         shared = self._body.shared
         home = {name: angle for name, angle in home_angles(motion, self._body, owned).items() if name not in shared}
         joints = list(dict.fromkeys(shared.get(joint, joint) for joint in (*motion.tracks, *home)))
@@ -90,7 +94,7 @@ class MotionPlayer:
                 )
 
     def _stand(self, joints: list[str]) -> CallSteps:
-        """Request and return the commanded angles of these joints, from which NAOqi begins."""
+        """Request and return the commanded angles [rad] of these joints by name; NAOqi begins each motion from them."""
         if not joints:
             return {}
         angles = yield self._post("ALMotion", "getAngles", joints, False)
@@ -103,7 +107,7 @@ class MotionPlayer:
             yield self._go(home, here, RECOVERY_TIME)
 
     def _go(self, goal: Mapping[str, float], here: Mapping[str, float], seconds: float) -> NaoqiCall:
-        """Move joints there in `seconds`, or in the time that the slowest joint needs."""
+        """Return the call that moves joints to `goal` in `seconds`, or in the time that the slowest joint needs."""
         way = {joint: angle - here[joint] for joint, angle in goal.items()}
         times = [[way_duration(way, self._body, seconds)]] * len(goal)
         return self._post("ALMotion", "angleInterpolation", list(goal), [[a] for a in goal.values()], times, True)

@@ -17,7 +17,7 @@ FALLING = ("robotIsFalling", "ALMotion/RobotIsFalling")
 
 SOUND = "ALSoundLocalization/SoundLocated"
 SURE_SOUND = 0.5
-"""The least confidence of a sound's direction that is accepted."""
+"""The minimum confidence of a sound's direction that is accepted, from 0 to 1."""
 
 FULL = "BatteryFullChargedFlagChanged"
 
@@ -33,14 +33,14 @@ _log = logging.getLogger(__name__)
 
 
 def event_of(sensor: str) -> str:
-    """Return ALMemory's name of the touch of a sensor."""
+    """Return ALMemory's name of the event of a tactile sensor."""
     return f"{sensor}{'Pressed' if sensor.endswith(('Bumper', 'Button')) else 'Touched'}"
 
 
 class NaoqiEvents:
     """Receives touches, falls and a full battery on qi's threads; `take` passes them to the robot's thread.
 
-    `pressed` has the state of every tactile sensor.
+    `pressed` has the state of every tactile sensor, `heard` counts the events received.
     """
 
     def __init__(self, sensors: Iterable[str]) -> None:
@@ -69,17 +69,18 @@ class NaoqiEvents:
                 _log.warning("the robot does not look towards sounds: %s", error)
 
     def sounds(self) -> list[tuple[float, float]]:
-        """Return the direction of the newest sound: the angles left of and below the head's direction [rad]; then
-        forget it.
+        """Return the direction of the newest sound, if any, and forget it.
+
+        The direction is two angles [rad]: to the left of and below the head's direction.
         """
         found = list(self._sounds)
         self._sounds.clear()
         return found
 
     def take(self, now: float, felt: Tactile | None) -> list[tuple[str, bool]]:
-        """Return the changes up to `now` [s]: sensors pressed or released, falls, and the battery.
+        """Return the changes up to `now` [s] of sensors, falls and the battery, each as a name and its new value.
 
-        Two events may overtake each other; the newer readings `felt` correct that.
+        Two events of a sensor may overtake each other; newer readings in `felt` correct its state.
         """
         if felt:
             for name, value in zip(felt.names, felt.values, strict=True):

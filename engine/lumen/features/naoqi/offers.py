@@ -1,4 +1,4 @@
-"""A real NAO, reached through NAOqi. `qi` is imported only when a connection is made."""
+"""A real NAO or Pepper and its hall. `qi` is imported only when a connection is made."""
 
 from lumen.errors import UsageError
 from lumen.features.naoqi.robot import NaoqiRobot

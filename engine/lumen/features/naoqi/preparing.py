@@ -23,10 +23,10 @@ OPTIONAL_SERVICES = {
     "ALAutonomousLife": "make sure that no other program moves it",
     "ALSystem": "its version is unknown",
 }
-"""Services that a tour can do without, and what is missing without them."""
+"""Services that an exhibition can do without, and what is missing without them."""
 OLDEST_NAOQI, TESTED_NAOQI = (2, 1), ((2, 1), (2, 8))
 AUTONOMOUS_LIFE_TIMEOUT = 10.0
-"""The time that autonomous life may take to end [s]: it lets the robot finish its present activity."""
+"""The maximum time that autonomous life may take to end [s]: it lets the robot finish its present activity."""
 
 _log = logging.getLogger(__name__)
 
@@ -47,7 +47,7 @@ def prepare(session: NaoqiSession, body: Body, *, again: bool) -> None:
 
 
 def halt(session: NaoqiSession, joints: Sequence[str]) -> None:
-    """End what the robot does and keep its balance: a walk after its step, motions at once, and speech."""
+    """End a walk after its step, motions of these joints at once, and speech; the robot keeps its balance."""
     session.post("ALMotion", "stopMove").wait(2.0)
     session.post("ALMotion", "killTasksUsingResources", list(joints)).wait(1.0)
     if session.has("ALTextToSpeech"):
@@ -79,7 +79,7 @@ def _check_version(session: NaoqiSession) -> None:
 
 
 def _check_joints(session: NaoqiSession, body: Body) -> None:
-    """Raise RobotError if the robot lacks a joint: a body without hands is another model."""
+    """Raise RobotModelError if the robot lacks a joint of the body, as a model without hands does."""
     names = list(map(str, session.request("ALMotion", "getBodyNames", "Body")))
     for joint in body.joints:
         if joint not in names:
@@ -89,7 +89,10 @@ def _check_joints(session: NaoqiSession, body: Body) -> None:
 
 
 def _protect(session: NaoqiSession) -> None:
-    """Switch on NAOqi's reflexes: the fall manager, the distance to obstacles, and adaptive stiffness."""
+    """Switch on NAOqi's reflexes: the fall manager, the distance to obstacles, and adaptive stiffness.
+
+    Failures are logged.
+    """
     for method, *arguments in (
         ("setFallManagerEnabled", True),
         ("setExternalCollisionProtectionEnabled", "All", True),

@@ -1,4 +1,4 @@
-"""Keeps the connection: it reconnects when the connection breaks, and reports both."""
+"""Keeps the connection: it connects again when the connection breaks, and reports the loss and the return."""
 
 import logging
 import threading
@@ -23,13 +23,16 @@ class ConnectionChange(NamedTuple):
     name: str
     """`robot.lost` or `robot.back`."""
     seconds: float
-    """The time for which the robot was away [s]."""
+    """The time for which the robot was away [s]; 0 if it was lost."""
     reason: str
-    """Why it was lost."""
+    """Why the connection was lost; empty if the robot is back."""
 
 
 class Reconnector:
-    """Opens a session and keeps it open; `take_over(again)` prepares the robot after each connection."""
+    """Opens a session and keeps it open; `take_over(again)` prepares the robot after each connection.
+
+    `again` is False only for the first connection. `first` is the wait before the first attempt to reconnect [s].
+    """
 
     def __init__(
         self, session: NaoqiSession, take_over: Callable[[bool], None], first: float = FIRST_RETRY_DELAY
@@ -41,7 +44,10 @@ class Reconnector:
         self._thread = WatchedThread("lumen-naoqi", self._keep)
 
     def open(self) -> None:
-        """Connect for the first time. Raises RobotError if that is impossible."""
+        """Connect for the first time, and start the thread that reconnects.
+
+        Raises RobotError if connecting is impossible.
+        """
         try:
             self._session.open()
             self._take_over(False)

@@ -30,8 +30,9 @@ class NaoqiRobot(ExecutingRobot):
     """The NAO or Pepper at `url`, in real time: `clock` returns the time of its answers, events and readings [s].
 
     Connecting takes the robot over: autonomous life ends, its reflexes stay on. When the connection breaks, all
-    commands fail and `robot.lost` is raised; `robot.back` follows once it is connected again. `stage` bounds where it
-    may walk, from its present place. Raises RobotError if there is no robot, or one of another kind than the body.
+    commands fail and `robot.lost` is raised; `robot.back` follows once it is connected again. `stage` limits its walks,
+    relative to its place at the first connection. `patience` is the maximum wait for an answer [s]. Raises RobotError
+    if there is no robot, or one of another kind than the body.
     """
 
     def __init__(
@@ -148,7 +149,7 @@ class NaoqiRobot(ExecutingRobot):
         self._events += self._alerts.motors(self._sensors.heat, now)
 
     def _fall(self, name: str, now: float) -> None:
-        """End the commands when a fall begins; raise `fallen` once it is over."""
+        """Make the commands fail when a fall begins; raise the event `fallen` once the fall is over."""
         self._skills.fallen = True
         self._executor.fail("the robot fell", fallen=True)
         if name == FALLEN:

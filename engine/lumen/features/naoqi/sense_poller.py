@@ -1,4 +1,4 @@
-"""The five senses, each read by a thread of its own while commands run."""
+"""The reading of the robot's senses, each by a thread of its own while commands run."""
 
 import logging
 import threading
@@ -16,7 +16,7 @@ _log = logging.getLogger(__name__)
 
 
 class SensePoller:
-    """Reads one sense repeatedly; `newest` is the last reading, None if it failed.
+    """Reads one sense every `period` [s] by `acquire`; `newest` is the last reading, None if it failed.
 
     A failure affects only that sense: it is logged once for each reason, and the sense is read again every second.
     """
@@ -35,8 +35,9 @@ class SensePoller:
         self._thread.start()
 
     def fresh(self, timeout: float = 5.0) -> Reading | None:
-        """Return a reading that begins after this call, or the newest if none comes within `timeout` [s]; None if the
-        last one failed.
+        """Return a reading that begins after this call; None if the last one failed.
+
+        If none comes within `timeout` [s], it is the newest reading.
         """
         with self._changed:
             self._wanted = wanted = self._rounds + 1 + self._busy  # a round in progress began earlier

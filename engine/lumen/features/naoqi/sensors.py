@@ -23,7 +23,7 @@ DEFAULT_IMAGE_SIZE = Size(320, 240)
 CAMERA_RATE = 30
 """The camera's images per second; the route's rate decides how many are fetched."""
 CLOCK_OFFSET_FRAMES = 100
-"""The number of images of which the fastest gives the offset between the robot's clock and ours."""
+"""The number of last images of which the fastest to arrive gives the offset between the robot's clock and Lumen's."""
 
 _log = logging.getLogger(__name__)
 
@@ -106,7 +106,7 @@ class NaoqiSensors:
         return Sonar(now, float(left), float(right))
 
     def tactile(self) -> Tactile:
-        """Return which tactile sensors are pressed."""
+        """Return the state of each tactile sensor: 1 if it is pressed, else 0."""
         now = self._clock()
         found = iter(self._memory([key for keys in self._touches.values() for key in keys]))
         pressed = {name: sum(bool(next(found)) for _ in keys) > 0 for name, keys in self._touches.items()}
@@ -122,7 +122,7 @@ class NaoqiSensors:
         return Battery(now, percentage, plugged=bool(plugged) or bool(charging), charging=bool(charging))
 
     def image(self) -> Image:
-        """Return the newest image of the top camera, with its time on our clock."""
+        """Return the newest image of the top camera, with its time on Lumen's clock [s]."""
         if self._wanted != self._size:
             self._let_go()
             self._size = self._wanted
@@ -146,8 +146,9 @@ class NaoqiSensors:
         return Image(stamp + min(self._behind), shaped)
 
     def _feelings(self) -> tuple[tuple[float, ...], dict[str, float], dict[str, float]]:
-        """Return the motors' temperatures, the inertial unit and the forces under the soles; those it lacks are left
-        out.
+        """Return the motors' temperatures [degrees Celsius], the inertial unit's values and the forces under the soles.
+
+        Values that the robot lacks are left out; the temperatures are all there or empty.
         """
         try:
             found, motors = self._memory(self._felt), len(self._names)
@@ -165,7 +166,7 @@ class NaoqiSensors:
         return whole, _known(zip(INERTIAL, inertial, strict=True)), _known(zip(self._force, soles, strict=True))
 
     def _whereabouts(self) -> Whereabouts | None:
-        """Return the robot's place by its odometry; None if that is unavailable."""
+        """Return the robot's place on the stage by its odometry; None if that is unavailable."""
         try:
             found = self._session.request("ALMotion", "getRobotPosition", True)
             return self._place([float(found[i]) for i in range(3)])
@@ -211,5 +212,5 @@ class NaoqiSensors:
 
 
 def _known(found: Iterable[tuple[str, Any]]) -> dict[str, float]:
-    """Return the values that are numbers."""
+    """Return the values that are numbers, rounded to four decimals."""
     return {name: round(float(value), 4) for name, value in found if isinstance(value, int | float)}

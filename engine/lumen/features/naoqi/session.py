@@ -27,8 +27,9 @@ _SCHEME = re.compile(r"^[a-z]+://")
 
 
 def qi() -> Any:
-    """Return the package `qi`, with its own logging switched off. Raises RobotError with instructions if it is
-    missing.
+    """Return the package `qi`, with its own logging switched off.
+
+    Raises RobotUnreachableError with instructions if it is missing.
     """
     try:
         import qi as package
@@ -51,7 +52,10 @@ def address(url: str) -> str:
 
 
 def plain(error: object) -> str:
-    """Return NAOqi's error message as a single line, without the location in NAOqi's code."""
+    """Return NAOqi's error message as a single line, without the location in NAOqi's code.
+
+    It is `CONNECTION_LOST` for each of qi's messages about a lost connection.
+    """
     text = " ".join(str(error).partition("\n\nAt:")[0].split())
     if text in _QI_CONNECTION_LOST:
         return CONNECTION_LOST
@@ -59,7 +63,7 @@ def plain(error: object) -> str:
 
 
 def _error_of(reason: str) -> RobotError:
-    """Return the error of a call that ended with this reason."""
+    """Return the error to raise for a call that failed for this reason."""
     return RobotLostError(reason) if reason == CONNECTION_LOST else RobotFailedError(reason)
 
 
@@ -71,16 +75,16 @@ class NaoqiCall:
 
     @property
     def done(self) -> bool:
-        """Whether the call has ended."""
+        """True if the call has ended."""
         return self._future is None or bool(self._future.isFinished())
 
     @property
     def failed(self) -> bool:
-        """Whether the call has ended with an error."""
+        """True if the call has ended with an error."""
         return bool(self._error) or (self._future is not None and self.done and bool(self._future.hasError()))
 
     def wait(self, seconds: float) -> bool:
-        """Wait at most so many seconds; return whether the call has ended."""
+        """Wait for the call for at most `seconds`; return True if it has ended."""
         if self._future is not None:
             self._future.wait(int(1000 * seconds))
         return self.done
@@ -99,8 +103,9 @@ class NaoqiCall:
 class NaoqiSession:
     """A session with the NAOqi at `url`, which can be opened again after it was lost.
 
-    `up` is whether it is connected, `ready` whether the robot is prepared as well. `lost` is called with the reason
-    each time that it breaks, on any thread. A robot that is silent for longer than `patience` [s] is lost.
+    `up` is True while it is connected, `ready` while the robot is prepared as well, and `pending` is the number of
+    calls in progress. `lost` is called with the reason each time the connection breaks, on any thread. A robot that
+    does not answer for longer than `patience` [s] is lost.
     """
 
     def __init__(self, url: str, lost: Callable[[str], None] = lambda _: None, patience: float = CALL_TIMEOUT) -> None:
@@ -115,7 +120,7 @@ class NaoqiSession:
 
     @property
     def up(self) -> bool:
-        """Whether the session is connected."""
+        """True if the session is connected."""
         return self._session is not None
 
     def open(self) -> None:
@@ -136,7 +141,7 @@ class NaoqiSession:
         self._session = session
 
     def find(self, names: Iterable[str]) -> list[str]:
-        """Find these services; return those that the robot lacks."""
+        """Look up these services for later calls; return the names of those that the robot lacks."""
         missing = []
         for name in names:
             future = self._session.service(name, _async=True)
@@ -148,11 +153,11 @@ class NaoqiSession:
         return missing
 
     def has(self, service: str) -> bool:
-        """Return whether the robot has that service and is connected."""
+        """Return True if the robot has that service and is connected."""
         return self.up and service in self._services
 
     def post(self, service: str, method: str, *arguments: Any) -> NaoqiCall:
-        """Call a method without waiting; errors are part of the result."""
+        """Call a method without waiting; the call's `result` raises its errors."""
         proxy = self._services.get(service)
         if not self.up:
             return NaoqiCall(error=CONNECTION_LOST)
@@ -174,12 +179,10 @@ class NaoqiSession:
         return self._serving[name]
 
     def request(self, service: str, method: str, *arguments: Any, patience: float = 0.0) -> Any:
-        """Call a method, wait for NAOqi's answer and return it; the wait is at most the longer of `patience` and the
-        session's [s].
+        """Call a method, wait for NAOqi's answer and return it. Only for threads that may wait.
 
-        Only for threads that may wait.
-
-        Raises RobotError; a silent robot counts as lost.
+        The wait is at most the longer of `patience` and the session's [s]. Raises RobotError; a robot that does not
+        answer in that time is lost.
         """
         call, session, patience = self.post(service, method, *arguments), self._session, max(patience, self._patience)
         if not call.wait(patience):
@@ -189,9 +192,9 @@ class NaoqiSession:
         return call.result()
 
     def subscribe(self, event: str, heard: Callable[[Any], None]) -> Any:
-        """Call `heard`, on a thread of qi's, each time that ALMemory raises that event.
+        """Call `heard`, on a thread of qi's, with the event's value each time that ALMemory raises that event.
 
-        It ends when the returned object is released. Raises RobotError.
+        The subscription ends when the returned object is released. Raises RobotError.
         """
         subscriber = self.request("ALMemory", "subscriber", event)
         try:

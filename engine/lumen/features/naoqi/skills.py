@@ -47,9 +47,9 @@ def language_of(code: str, spoken: Sequence[str]) -> str:
 
 
 LOOK_TOLERANCE = 0.03
-"""A head that is nearer than this to its goal has reached it [rad]."""
+"""A head joint that is nearer than this to its goal has reached it [rad]."""
 LOOK_GRACE = 1.0
-"""The time that a look may take beyond what is necessary [s]."""
+"""The time that a look may take beyond the time that the movement needs [s]."""
 WAKE_SPEED = 0.5
 SOUND_FOLDER = "/home/nao/lumen"
 """The folder of the exhibition's sounds on the robot: NAOqi plays only files on its own disk."""
@@ -58,7 +58,10 @@ _log = logging.getLogger(__name__)
 
 
 class NaoqiSkills:
-    """Begins activities; `fallen` is whether the robot has fallen and not got up."""
+    """Begins activities; `fallen` is True from a fall until the robot stands again.
+
+    If `body_language` is True, NAOqi makes the gestures of speech.
+    """
 
     def __init__(
         self, session: NaoqiSession, body: Body, area: WalkingArea, notice: EventSink, clock: Callable[[], float]
@@ -73,7 +76,10 @@ class NaoqiSkills:
         self.body_language = False
 
     def begin(self, command: NativeCommand, now: float) -> CallSequence:
-        """Begin a command. Raises RobotError if the robot can't."""
+        """Return the activity of a command that begins at `now` [s].
+
+        Raises RobotError if the robot can't perform it.
+        """
         match command:
             case Say():
                 return CallSequence(self._say(command), lambda: [self._post("ALTextToSpeech", "stopAll")])
@@ -131,7 +137,7 @@ class NaoqiSkills:
         yield self._post("ALAudioPlayer", "playFile", f"{SOUND_FOLDER}/{file}")
 
     def _leds(self, colours: Mapping[str, str], seconds: float) -> CallSequence:
-        """Begin a fade; a cancelled one is replaced by an immediate one, because NAOqi can't stop it."""
+        """Return the activity of a fade; when it is cancelled, the lights change at once: NAOqi can't stop it."""
         return CallSequence(
             self._fade(colours, seconds),
             lambda: [self._post("ALLeds", "fadeRGB", *fade) for fade in fades(colours, self._body)],

@@ -66,14 +66,20 @@ class WalkingArea:
         return danger(self._pressed, (d for d in (echo.left, echo.right) if d > 0.0) if echo else ())
 
     def check_way(self, here: GroundPose, way: GroundPose) -> None:
-        """Raise RobotError if a walk by `way` from `here` would leave the stage, farther than the robot already has."""
+        """Raise RobotError if a walk by `way` from `here` would leave the stage, farther than the robot already has.
+
+        `way` is relative to `here`: ahead and left [m], and the turn [rad].
+        """
         x, y, theta = here
         ahead = x + way[0] * cos(theta) - way[1] * sin(theta), y + way[0] * sin(theta) + way[1] * cos(theta)
         if reason := self.outside((*ahead, theta), here):
             raise RobotRefusedError(f"{reason}: the robot did not start walking")
 
     def outside(self, there: GroundPose, before: GroundPose, drift: float = 0.0) -> str:
-        """Return why the robot must not be `there`; empty if it stays on the stage, or no farther out than `before`."""
+        """Return why the robot must not be `there`; empty if it stays on the stage, or no farther out than `before`.
+
+        It may leave the stage by `drift` [m].
+        """
         if self.stage is None or self._origin is None:
             return ""
         reached, stood = self._on_stage(there), self._on_stage(before)

@@ -23,12 +23,12 @@ PostCall = Callable[..., NaoqiCall]
 
 
 def grounded(family: object) -> bool:
-    """Return whether the posture family means that the robot is not on its feet or wheels."""
+    """Return True if the posture family means that the robot is not on its feet or wheels."""
     return str(family) in SITTING_FAMILIES or str(family).startswith("Lying")
 
 
 class WalkMonitor:
-    """Checks for hazards while the robot walks, and stops it; `reason` is why."""
+    """Checks for hazards while the robot walks, and stops it at the first; `reason` is why, empty if it has not."""
 
     def __init__(self, post: PostCall, area: WalkingArea, here: GroundPose) -> None:
         self.reason = ""
@@ -44,7 +44,7 @@ class WalkMonitor:
             self._post("ALMotion", "stopMove")
 
     def _astray(self, now: float) -> str:
-        """Return why it must not continue from its present place, empty if it may."""
+        """Return why the robot must not continue from its present place; empty if it may or the place is unknown."""
         if self._where is None:
             if now >= self._look:
                 self._where, self._look = self._post("ALMotion", "getRobotPosition", True), now + POSITION_CHECK_PERIOD
@@ -65,7 +65,10 @@ class NaoqiWalks:
         self._post, self._area = post, area
 
     def begin(self, command: Walk | Move) -> CallSequence:
-        """Begin a walk. Raises RobotError, and moves nothing, if it must not begin."""
+        """Return the activity of a walk.
+
+        Raises RobotError if the walk is invalid or a hazard is near; nothing moves then.
+        """
         numbers = (command.x, command.y, command.theta) if isinstance(command, Walk) else (
             command.vx, command.vy, command.vtheta)  # fmt: skip
         if not all(map(isfinite, numbers)):
@@ -101,7 +104,7 @@ class NaoqiWalks:
             raise RobotFailedError("the robot stopped before it arrived: something is in its way")
 
     def _arrived(self, here: GroundPose, way: tuple[float, float, float]) -> CallSteps:
-        """Return whether the robot is at its goal by its odometry: `moveTo` of NAOqi 2.1 does not report it."""
+        """Return True if the robot is at its goal by its odometry: `moveTo` of NAOqi 2.1 does not report it."""
         there = yield self._post("ALMotion", "getRobotPosition", True)
         went, turned = hypot(there[0] - here[0], there[1] - here[1]), there[2] - here[2]
         return abs(went - hypot(*way[:2])) <= ARRIVAL_TOLERANCE and abs(turned - way[2]) <= HEADING_TOLERANCE
