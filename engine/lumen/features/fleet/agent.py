@@ -1,8 +1,9 @@
-"""The agent of a robot: it receives orders, and brings the robot to the ordered bundle by itself.
+"""The agent of a robot: it receives orders, and makes the robot run the ordered bundle without help.
 
-It fetches the bundle by its hash and checks the signature. The reload then lints it for the robot's body, replays the
-last visits, plans the change from the present configuration, applies it between two visitors, and watches the result.
-The agent does not compare clocks, never waits for the network, and trusts no message without a signature.
+The agent fetches the bundle by its hash and checks the signature. The reload then lints the bundle for the robot's
+body, replays the last visits, plans the change from the present configuration, applies it between two visitors, and
+watches the result. The agent does not compare clocks, never waits for the network, and trusts no message without a
+signature.
 """
 
 import time
@@ -40,23 +41,24 @@ class FileTaker(FileTrier, Protocol):
 
     @property
     def on_probation(self) -> bool:
-        """Whether the files that run are still on probation."""
+        """True if the files that run are still on probation."""
 
     def offer(self, files: Mapping[str, bytes], answer: Callable[[Any], None]) -> None:
         """Apply files between two visits; `answer` receives each verdict."""
 
     def install(self, files: Mapping[str, bytes]) -> None:
-        """Write the files that run into the project's folder, as soon as all of the house's robots that share it have
-        them.
+        """Write the files that run into the project's folder.
+
+        If several robots of the house share the folder, this happens once all of them run these files.
         """
 
 
 class FleetAgent:
-    """The agent of one robot, which trusts the public key `key`. Call `tick` regularly, and `order` and `bundle` with
-    messages.
+    """The agent of one robot, which trusts the public key `key`.
 
-    `save` writes its memory before it acts on a message. `tell` receives lines for people, and `incident` what the
-    centre should know at once. Nothing that leaves the house contains names or words of people.
+    Call `tick` regularly, and `order` and `bundle` with the bodies of messages. `save` writes the agent's memory before
+    it acts on a message. `tell` receives lines for people; `incident` receives the kind and text of what the centre
+    should know at once. Nothing that leaves the house contains names or words of people.
     """
 
     def __init__(
@@ -88,11 +90,11 @@ class FleetAgent:
 
     @property
     def running(self) -> str:
-        """The bundle that runs, by its name in the fleet."""
+        """The hash of the bundle that runs, as the fleet knows it."""
         return self.memory.names.get(self._taker.running, self._taker.running)
 
     def order(self, body: Any) -> None:
-        """Process a message with an order for this house."""
+        """Process a message with an order for this house; an invalid, unsigned or outdated one is only reported."""
         match body:
             case {"order": str(text), "signature": str(signature)}:
                 pass
@@ -112,7 +114,7 @@ class FleetAgent:
         return None
 
     def bundle(self, body: Any) -> None:
-        """Process a message with a part of a bundle, if that bundle is wanted."""
+        """Process a message with a part of a bundle; it is ignored unless that bundle is wanted."""
         wants = self.wants or self.trial.wants
         if not wants or not isinstance(body, Mapping) or body.get("hash") != wants:
             return
@@ -129,7 +131,7 @@ class FleetAgent:
         self.wants = self.trial.wants = ""
 
     def tick(self) -> None:
-        """Continue towards the ordered bundle."""
+        """Take the next possible steps towards running the ordered bundle, and towards trying one."""
         memory, wanted = self.memory, self.memory.followed.wanted
         if self.state == PROBATION and self._taker.running != self._offered:
             self._fail(ROLLED_BACK, "the bundle failed its probation; the reason is in the house's journal")
@@ -157,7 +159,10 @@ class FleetAgent:
             self._go(goal, own=back)
 
     def presence(self, seconds: float, counted: Mapping[str, int]) -> RobotPresence:
-        """Return the robot's presence; add `seconds` of running and the new counts to its measures."""
+        """Return the robot's presence; add `seconds` of running and the new counts to its measures.
+
+        The measures are saved, and an unfinished installation is continued.
+        """
         memory = self.memory
         if memory.counted != self._taker.running:
             memory.past, memory.now = memory.now, {}
@@ -239,7 +244,7 @@ class FleetAgent:
         self._tell(f"bundle {self._goal[:12]} is proved")
 
     def _install(self) -> None:
-        """Keep bringing proved files into the project's folder until they are there."""
+        """Write proved files into the project's folder if they are not there yet."""
         writing = self.memory.writing
         if writing and (files := self._taker.files(writing)) is not None and not self._folder.keep(files):
             self._taker.install(files)

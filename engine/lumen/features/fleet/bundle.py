@@ -15,22 +15,25 @@ from lumen.run.bundles import DamagedBundleError
 
 HASH = re.compile(r"[0-9a-f]{64}")
 MAX_BYTES = 12_000_000
-"""The largest packed bundle [bytes]."""
+"""The maximum size of a packed bundle [bytes]."""
 PIECE = 500_000
-"""The size of its parts in messages [bytes]."""
+"""The maximum size of the parts that are sent in messages [bytes]."""
 
 
 class BadBundleError(UsageError):
-    """A message with an invalid bundle, the wrong one, or one without a trusted signature; its text has the reason."""
+    """A message contains no valid bundle, the wrong one, or one without a trusted signature; the text is the reason."""
 
 
 def packed(files: Mapping[str, bytes]) -> bytes:
-    """Return the files as a zip, without fleet.yaml and the choices made at a start."""
+    """Return the files as a zip, without fleet.yaml and the marks of choices made at a start."""
     return bundles.packed({path: files[path] for path in files if path != FLEET_FILE and belongs(path)})
 
 
 def messages_of(files: Mapping[str, bytes], signer: Signer) -> list[dict[str, Any]]:
-    """Return the signed bundle of these files as messages of acceptable size. Raises UsageError if it is too large."""
+    """Return the signed bundle of these files as messages' bodies, each with one part.
+
+    Raises UsageError if it is too large.
+    """
     hash, data = fingerprint(files), packed(files)
     if len(data) > MAX_BYTES:
         raise UsageError(
@@ -43,17 +46,17 @@ def messages_of(files: Mapping[str, bytes], signer: Signer) -> list[dict[str, An
 
 
 class BundleParts:
-    """Joins the parts of a bundle in any order, with repetitions; one bundle at a time."""
+    """Joins the parts of one bundle at a time; they may come in any order and more than once."""
 
     def __init__(self) -> None:
         self._of: tuple[str, int] = ("", 0)
         self._parts: dict[int, bytes] = {}
 
     def take(self, body: Any, wanted: str, key: str) -> dict[str, bytes] | None:
-        """Add a part; return the files once all parts are there, else None.
+        """Add the part in a message's body; return the files once all parts are there, else None.
 
-        The bundle must be the one wanted, and signed by the key's owner. Raises BadBundleError, and forgets the parts
-        so far.
+        Raises BadBundleError, and forgets the parts so far, if the bundle's hash is not `wanted`, if the owner of the
+        public key `key` has not signed it, or if it is damaged.
         """
         try:
             return self._take(body, wanted, key)
@@ -92,7 +95,7 @@ class BundleParts:
 
 
 def unpacked(data: bytes, wanted: str) -> dict[str, bytes]:
-    """Return the files in a zip. Raises BadBundleError if it is damaged or the files do not have that hash."""
+    """Return the files in a zip. Raises BadBundleError if it is damaged or the files do not have the hash `wanted`."""
     try:
         files = bundles.unpacked(data, MAX_PROJECT_BYTES)
     except DamagedBundleError as error:
@@ -105,6 +108,6 @@ def unpacked(data: bytes, wanted: str) -> dict[str, bytes]:
 
 
 def _inside(name: str) -> bool:
-    """Return whether a file of that name belongs to a project and stays inside its folder."""
+    """Return True if a file of that name belongs to a project and stays inside its folder."""
     parts = name.split("/")
     return belongs(name) and "\\" not in name and not {"", ".", ".."} & {*parts} and "\0" not in name

@@ -21,19 +21,22 @@ _KEY = re.compile(r"""["']?([\w-]+)["']?\s*:""")
 
 
 def fitted(bundle: Mapping[str, bytes], here: Mapping[str, bytes]) -> dict[str, bytes]:
-    """Return the files of a bundle, adapted to a house that runs the files `here`. Raises UsageError."""
+    """Return the files of a bundle, adapted to a house that runs the files `here`.
+
+    Raises UsageError as `at_home` does.
+    """
     return {**as_started(bundle, here), MAIN_FILE: at_home(bundle.get(MAIN_FILE, b""), here.get(MAIN_FILE, b""))}
 
 
 def as_started(files: Mapping[str, bytes], here: Mapping[str, bytes]) -> dict[str, bytes]:
-    """Return the files with the choices made when `here` was started, such as --model."""
+    """Return the files with the choices that were made when `here` was started, such as --model."""
     return {**files, **{path: mark for path, mark in here.items() if not belongs(path)}}
 
 
 def at_home(shared: bytes, own: bytes) -> bytes:
     """Return a bundle's lumen.yaml with the house's own keys in place of the bundle's.
 
-    Raises UsageError if one of them does not have its top-level keys at the left edge.
+    Raises UsageError if one of the two is not UTF-8, or does not have its top-level keys at the left edge.
     """
     of_house = {*HOUSE_KEYS, *(key.partition(".")[0] for key, row in table("sections").items() if row.of_house)}
     ours = {key: text for key, text in _blocks(own) if key in of_house}
@@ -68,8 +71,9 @@ class FileTrier(Protocol):
         """Return the files of that hash if they have run here, else None."""
 
     def attempt(self, files: Mapping[str, bytes], answer: Callable[[Any], None]) -> None:
-        """Judge files as if they were applied: lint, replay of the last visits, and plan; `answer` receives the
-        verdict.
+        """Judge files as if they were applied: lint them, replay the last visits, and plan the change.
+
+        `answer` receives the verdict.
         """
 
 
@@ -86,7 +90,7 @@ class BundleTrial:
         self.said: dict[str, Any] = {}
 
     def tick(self, bundle: str, running: str) -> None:
-        """Continue the trial; `running` is the fleet's name of the bundle that runs."""
+        """Continue the trial of `bundle`, empty for none; `running` is the hash of the bundle that runs."""
         if bundle != self._about:
             self._about, self._asked, self.said, self.wants = bundle, False, {}, ""
         if not bundle or self._asked:

@@ -1,4 +1,4 @@
-"""A centre: it collects the robots' reports, advances a rollout, and tells each house what to run."""
+"""A centre: it collects the robots' reports, advances a rollout, and sends each house the order what to run."""
 
 import time
 from collections import deque
@@ -25,20 +25,20 @@ from lumen.language.fleet_keys import KEPT, PRESENCE, bundle_key, desired_key, r
 from lumen.ports import Bus, Message
 
 TELL_PERIOD = 10.0
-"""The longest time between two orders to a house [s]; changes are sent at once."""
+"""The maximum time between two orders to a house [s]; changes are sent at once."""
 BUNDLE_PERIOD = 20.0
-"""The shortest time between sending the same bundle to a house twice [s]."""
+"""The minimum time between sending the same bundle to a house twice [s]."""
 KEEP_PERIOD = 60.0
-"""The time between two records of how long a step has been watched [s]."""
+"""The time between two lines of the journal that only record how long a step has been watched [s]."""
 MAX_WAITING = 20_000
 
 
 class Centre:
     """The centre of one fleet, on the centre's bus. Call `tick` about once a second.
 
-    Every decision is in its journal before it is sent; if that can't be written, it decides nothing, and `trouble` has
-    the reason. `clock` gives the time [s since 1970]. Incidents and counts come by the `stream`; without one they come
-    by the bus, and are lost while no centre is running.
+    Every decision is in its journal before it is sent; if that can't be written, the centre decides nothing, and
+    `trouble` has the reason. `clock` returns the time [s since 1970]. Incidents and counts are read from the `stream`;
+    without one they come by the bus, and are lost while no centre is running. `tell` receives lines for people.
     """
 
     def __init__(
@@ -80,7 +80,10 @@ class Centre:
             self._order(now)
 
     def change(self, state: CentreState, what: str) -> None:
-        """Replace the state by one that a person decided. Raises UsageError if it can't be written to the journal."""
+        """Replace the state by one that a person decided; `what` describes it in the journal and to people.
+
+        Raises UsageError if the journal can't be written.
+        """
         if why := self._journal.write(what, state):
             raise UsageError(f"the centre's journal can't be written: {why}")
         self.state, self.trouble = state, ""

@@ -103,7 +103,10 @@ class CentreDesk:
         return found[0]
 
     def _plan(self, said: Mapping[str, Any]) -> RolloutPlan:
-        """Return the requested plan; what the request omits comes from fleet.yaml. Raises UsageError."""
+        """Return the requested plan; what the request omits comes from fleet.yaml.
+
+        Raises UsageError if a step or the condition is invalid.
+        """
         fleet, usual = self._centre.fleet, self._centre.fleet.rollout
         words, pause, condition = said.get("steps"), said.get("pause"), said.get("abort-if")
         steps = usual.steps

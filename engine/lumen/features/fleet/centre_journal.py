@@ -13,7 +13,7 @@ from lumen.upkeep.own_folders import private_folder
 
 FILE = "centre.jsonl"
 TAIL = 4_000_000
-"""The size of the file's end that is read to find the last state [bytes]."""
+"""The size of the end of the file in which the last state is searched [bytes]."""
 
 
 class CentreJournal:
@@ -63,7 +63,7 @@ class CentreJournal:
         return ""
 
     def _torn(self) -> bool:
-        """Return whether a crash has cut off the last line."""
+        """Return True if a crash has cut off the last line."""
         if not self.file.exists() or not self.file.stat().st_size:
             return False
         with open(self.file, "rb") as opened:

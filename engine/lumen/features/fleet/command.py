@@ -69,7 +69,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Run the command and return 0. Raises UsageError and BusError."""
+    """Run the subcommand in `options.what` and return 0. Raises UsageError, ProjectError or BusError."""
     root = Path(options.project or ".")
     match options.what:
         case "keygen":
@@ -137,7 +137,10 @@ def bus_name(url: str) -> str:
 
 
 def _publish(options: argparse.Namespace, root: Path) -> dict[str, Any]:
-    """Lint the project and send it to the centre as a bundle; a project with errors is not sent."""
+    """Lint the project, send it to the centre as a bundle, and return the centre's answer.
+
+    Raises ProjectError if the project has errors; nothing is sent then.
+    """
     found = version(options.name, root) if options.name else version(None, root)
     files = {path: content for path, content in found.files.items() if path != FLEET_FILE}
     answer: dict[str, Any] = {}
@@ -181,8 +184,9 @@ def _diff(options: argparse.Namespace, root: Path) -> int:
 
 
 def _asked(options: argparse.Namespace, root: Path, body: Mapping[str, Any], what: str = "") -> dict[str, Any]:
-    """Return the centre's answer to a request. Raises UsageError with its reason if it refuses, BusError without an
-    answer.
+    """Return the centre's answer to a request, without its `ok`.
+
+    Raises UsageError with the centre's reason if it refuses, and BusError if it does not answer.
     """
     url = _address(options, root)
     bus = _connected(url, "lumen fleet")
@@ -199,7 +203,7 @@ def _asked(options: argparse.Namespace, root: Path, body: Mapping[str, Any], wha
 
 
 def _connected(url: str, sender: str) -> Bus:
-    """Return the centre's bus. Raises BusError with the remedy."""
+    """Return a connection to the centre's bus. Raises BusError with the remedy."""
     try:
         return connect(url, sender=sender)
     except BusUnreachableError as error:

@@ -1,4 +1,4 @@
-"""The incidents and counts of a fleet at its centre, kept together with the place reached in the stream."""
+"""The incidents and counts of a fleet at its centre, saved together with the offset reached in the stream."""
 
 import time
 from collections import deque
@@ -14,15 +14,17 @@ from lumen.project.home import Home
 FILE = "log.json"
 MAX_INCIDENTS, MAX_IDS, MAX_BUNDLES = 200, 2000, 4
 SAVE_PERIOD = 10.0
-"""The time between two writes [s]. A process killed in between reads the same messages again, and counts from the
-file.
+"""The time between two writes [s].
+
+After a process is killed, the next one reads the messages since the last write again, and adds them to the saved
+counts.
 """
 
 
 class FleetLog:
     """The log in the home of a centre; `next` is the stream's next offset to read.
 
-    Repeated messages are recognised by their id: a shovel sends unconfirmed ones again.
+    Repeated messages are recognised by their id, since a shovel of the broker sends unconfirmed ones again.
     """
 
     def __init__(self, home: Home) -> None:
@@ -41,7 +43,7 @@ class FleetLog:
                 self.incidents.extend(incidents)
 
     def take(self, entry: StreamEntry, now: float) -> str:
-        """Count a message at `now` [s since 1970]; return a line about an incident, else an empty text."""
+        """Count a message that arrived at `now` [s since 1970]; return a line about an incident, else an empty text."""
         if entry.offset >= 0:
             self.next, self._changed = entry.offset + 1, True
         if entry.id and entry.id in self._ids:
@@ -70,7 +72,7 @@ class FleetLog:
         return told
 
     def numbers(self, measures: Mapping[str, FleetMeasure]) -> list[dict[str, Any]]:
-        """Return the counts of each bundle, the most recently reported last."""
+        """Return each bundle's robots, hours and rates of `measures`, the most recently reported bundle last."""
         return [
             {
                 "bundle": bundle,
@@ -82,7 +84,10 @@ class FleetLog:
         ]
 
     def save(self, *, now: bool = False) -> str:
-        """Write the log if it changed and enough time has passed; return the error, else an empty text."""
+        """Write the log if it changed, at once with `now`, else at most every `SAVE_PERIOD`.
+
+        Return the error, else an empty text.
+        """
         if not self._changed or not (now or time.monotonic() - self._saved > SAVE_PERIOD):
             return ""
         self._saved, self._changed = time.monotonic(), False

@@ -25,7 +25,7 @@ class BundleFolder:
     def keep(self, files: Mapping[str, bytes]) -> str:
         """Write the files of a bundle, all or nothing; return the error, else an empty text.
 
-        A damaged file of that name is replaced.
+        A damaged bundle of the same hash is replaced.
         """
         hash = fingerprint(files)
         if self.files(hash) is not None:
@@ -38,7 +38,7 @@ class BundleFolder:
         return ""
 
     def files(self, hash: str) -> dict[str, bytes] | None:
-        """Return the files of that bundle, None if they are missing or damaged."""
+        """Return the files of the bundle with that hash; None if it is missing or damaged."""
         if not HASH.fullmatch(hash):
             return None
         try:
@@ -54,7 +54,7 @@ class BundleFolder:
         return []
 
     def prune(self, wanted: Iterable[str]) -> None:
-        """Delete all bundles but these."""
+        """Delete all bundles but those with these hashes."""
         for hash in {*self.hashes()} - {*wanted}:
             with suppress(OSError):
                 self._path(hash).unlink()
@@ -84,13 +84,16 @@ def install(root: Path, files: Mapping[str, bytes]) -> Mapping[str, bytes]:
 
 
 def all_have(root: Path, hash: str, robots: Iterable[str]) -> bool:
-    """Return whether all of these robots, whose exhibitions share the folder, last reported to run these files."""
+    """Return True if each of these robots, which share the folder, last saved that it runs the files of that hash."""
     known = {robot: memory for _, robot, memory in _memories(root)}
     return all(robot in known and known[robot].counted == hash for robot in robots)
 
 
 def finish(root: Path) -> None:
-    """Complete the installation of files that was interrupted when the process ended."""
+    """Complete an installation of files that was interrupted when the process ended.
+
+    This waits while another robot that shares the folder neither runs nor installs these files.
+    """
     found = list(_memories(root))
     for home, robot, memory in found:
         hash = memory.writing
@@ -102,7 +105,7 @@ def finish(root: Path) -> None:
 
 
 def written(home: Home, robot: str, memory: AgentMemory) -> None:
-    """Remember that the files are installed."""
+    """Save that the files of this robot's agent are installed."""
     memory.writing = ""
     keep(home, robot, memory)
 
@@ -115,7 +118,7 @@ def _memories(root: Path) -> Iterator[tuple[Home, str, AgentMemory]]:
 
 
 def _own(files: Mapping[str, bytes]) -> dict[str, bytes]:
-    """Return the files that a bundle may change."""
+    """Return those of the files that a bundle may change: all of the project but fleet.yaml."""
     return {path: content for path, content in files.items() if path != FLEET_FILE and belongs(path)}
 
 

@@ -24,9 +24,9 @@ class AgentMemory:
     failed: dict[str, list[Any]] = field(default_factory=dict)
     """For each failed bundle: the order at the time, the state, and the reason."""
     done: list[int] = field(default_factory=list)
-    """The last order that was fulfilled."""
+    """The term and version of the last order that was fulfilled; empty if none was."""
     trying: str = ""
-    """The bundle that is on probation."""
+    """The bundle that is on probation; empty if none is."""
     tries: int = 0
     """The number of times that this process ended during that probation."""
     writing: str = ""
@@ -34,11 +34,11 @@ class AgentMemory:
     now: dict[str, float] = field(default_factory=dict)
     """Counts since the present files began to run."""
     past: dict[str, float] = field(default_factory=dict)
-    """Counts of the files before."""
+    """Counts of the files that ran before the present ones."""
     counted: str = ""
     """The hash of the files that `now` counts for."""
     since: float = 0.0
-    """The time since which they run [s since 1970]."""
+    """The time at which these files began to run [s since 1970]."""
 
     def name(self, files: str, bundle: str) -> None:
         """Remember that files of that hash are this bundle, as adapted to this house."""
@@ -71,5 +71,5 @@ def remember(home: Home, robot: str) -> AgentMemory:
 
 
 def keep(home: Home, robot: str, memory: AgentMemory) -> str:
-    """Write the state; return the error, else an empty text."""
+    """Write the state to the robot's home; return the error, else an empty text."""
     return home.write_json(memory_file(robot), asdict(memory))

@@ -11,11 +11,11 @@ from lumen.features.fleet.settings import Fleet
 from lumen.language.iso_time import iso_time
 
 MOST_SKEW = 30.0
-"""The error of a robot's clock from which it is reported [s]."""
+"""The error of a robot's clock above which it is reported [s]."""
 
 
 def overview(fleet: Fleet, state: CentreState, heard: Mapping[str, HeardPresence], now: float) -> dict[str, Any]:
-    """Return houses, robots and the rollout; `now` is the centre's time [s since 1970]."""
+    """Return the houses, the robots and the rollout as JSON data; `now` is the centre's time [s since 1970]."""
     robots = [_robot(name, state, heard.get(name), fleet, now) for name in fleet.robots]
     houses = [
         {

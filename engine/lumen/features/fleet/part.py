@@ -57,14 +57,15 @@ HOUSE_VARIABLE = "LUMEN_HOUSE"
 PERIOD = 10.0
 """The time between two messages about the robot's presence [s]."""
 NUMBERS_PERIOD = 3600.0
-"""The time between two messages with counts for long-term statistics [s]; they are also sent at once when a bundle
-ends.
+"""The time between two messages with counts for long-term statistics [s].
+
+The counts of a bundle are also sent at once when it ends.
 """
 MAX_WAITING = 50
 
 
 class ReloadTaker:
-    """Applies files through the reload of a running exhibition; `installed` is called when they are on the disk."""
+    """Applies files through the reload of a running exhibition; `installed` is called when they are in the folder."""
 
     def __init__(
         self, root: Path, reloader: Reloader, behavior: LiveBehavior, home: Home, installed: Callable[[], None]
@@ -79,7 +80,7 @@ class ReloadTaker:
 
     @property
     def on_probation(self) -> bool:
-        """Whether the files that run are still on probation."""
+        """True if the files that run are still on probation."""
         return self._reloader.on_probation
 
     def files(self, hash: str) -> Mapping[str, bytes] | None:
@@ -98,7 +99,7 @@ class ReloadTaker:
         self._reloader.offer(files, answer, dry=True)
 
     def install(self, files: Mapping[str, bytes]) -> None:
-        """Write files into the project's folder, once all robots that share it have them."""
+        """Write files into the project's folder if all robots that share it run them; else do nothing."""
         project, hash = self._behavior.loop.project, fingerprint(files)
         if project.told_apart and not all_have(self._root, hash, project.robots):
             return
@@ -112,7 +113,7 @@ class ReloadTaker:
 
 
 class FleetPart(Part):
-    """The agent of this robot; it needs the same roles as the reload."""
+    """The part that runs this robot's agent; it needs the same roles as the reload."""
 
     patient = True
 
@@ -194,8 +195,9 @@ class FleetPart(Part):
 
 
 def make(services: Services) -> FleetPart | None:
-    """Make the agent of a robot that belongs to a fleet; None for any other robot, in a story, or with `--reload
-    off`.
+    """Make the part of a robot that belongs to a fleet.
+
+    None for any other robot, in a story, without a project's folder, or with `--reload off`.
     """
     directory, project = directory_of(services), services.plan.project
     if directory is None or directory.home is None or services.plan.story:

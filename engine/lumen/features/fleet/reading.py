@@ -1,4 +1,4 @@
-"""fleet.yaml, from its plain data to a `Fleet`."""
+"""Reads fleet.yaml into a `Fleet`."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -18,8 +18,9 @@ BAD_SHARE = Code("bad-share", "fleet", ERROR, "a rollout step is not a valid sha
 
 
 def build_fleet(data: Any, report: DocumentReport, *, name: str) -> Fleet | None:
-    """Return the fleet in the data of fleet.yaml, which has the shape of fleet.schema.json but may lack any key; None
-    if it is no map.
+    """Return the fleet in the data of fleet.yaml; None if the data is no map.
+
+    The data has the shape of fleet.schema.json, but may lack any key.
     """
     if not isinstance(data, Mapping):
         return None

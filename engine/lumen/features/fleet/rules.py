@@ -1,4 +1,4 @@
-"""Rules for fleet.yaml: names that exist, steps that grow, encrypted connections."""
+"""Rules for fleet.yaml: names must exist, steps must grow, and connections must be encrypted."""
 
 import base64
 import binascii

@@ -16,11 +16,11 @@ class FleetHouse:
     """A house with its robots."""
 
     broker: str
-    """The address of its broker."""
+    """The address of the house's broker."""
     robots: tuple[str, ...] = ()
-    """The names of its robots."""
+    """The names of the house's robots."""
     labels: Mapping[str, str] = field(default_factory=dict)
-    """Labels by which groups choose it."""
+    """Labels by which groups choose the house."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,9 +30,9 @@ class FleetGroup:
     robots: tuple[str, ...] = ()
     """Robots by name (`HOUSE/ROBOT`)."""
     houses: tuple[str, ...] = ()
-    """Houses all of whose robots belong to the group."""
+    """Houses whose robots all belong to the group."""
     labels: Mapping[str, str] = field(default_factory=dict)
-    """Labels; all robots of houses with all of them belong to the group."""
+    """Labels: all robots of houses that have all of these belong to the group; none if it is empty."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,7 +62,7 @@ class StepTarget:
 
 @dataclass(frozen=True, slots=True)
 class RolloutPlan:
-    """The steps of a rollout and their conditions."""
+    """The steps of a rollout and the conditions of going on to the next."""
 
     steps: tuple[StepTarget, ...] = (StepTarget(share=1.0),)
     pause: float = DEFAULT_PAUSE
@@ -70,7 +70,7 @@ class RolloutPlan:
     abort_if: str = ""
     """The condition that rolls all robots back, empty for none."""
     try_first: bool = False
-    """Whether all robots try the bundle before the first one switches to it."""
+    """True if all robots try the bundle before the first one switches to it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,7 +106,7 @@ class Fleet:
 
 
 def step_target(text: str) -> StepTarget | None:
-    """Return the target that `demo-1`, `10%` or `all` means; None for a share outside of 0 % to 100 %."""
+    """Return the target that `demo-1`, `10%` or `all` means; None for a share that is not in (0 %, 100 %]."""
     if text == EVERYBODY:
         return StepTarget(share=1.0)
     if not text.endswith("%"):

@@ -14,7 +14,10 @@ BUNDLE, ORDER = b"lumen bundle\n", b"lumen order\n"
 
 
 def generate(file: Path) -> str:
-    """Write a new private key, readable only by its owner; return the public key in base64. Raises UsageError."""
+    """Write a new private key, readable only by its owner; return the public key in base64.
+
+    Raises UsageError if the file exists or can't be written.
+    """
     keys = _ed25519()
     key = keys.Ed25519PrivateKey.generate()
     text = base64.b64encode(key.private_bytes_raw())
@@ -30,8 +33,9 @@ def generate(file: Path) -> str:
 
 
 class Signer:
-    """Signs with the private key in a file; `public` is the public key. Raises UsageError if the file has no valid
-    key.
+    """Signs with the private key in a file; `public` is the public key in base64.
+
+    Raises UsageError if the file can't be read or has no valid key.
     """
 
     def __init__(self, file: Path) -> None:
@@ -45,12 +49,12 @@ class Signer:
         self.public = base64.b64encode(self._key.public_key().public_bytes_raw()).decode()
 
     def sign(self, kind: bytes, data: bytes) -> str:
-        """Return the signature in base64."""
+        """Return the signature in base64 of data of that kind, `BUNDLE` or `ORDER`."""
         return base64.b64encode(self._key.sign(kind + data)).decode()
 
 
 def verified(public: str, kind: bytes, data: bytes, signature: str) -> bool:
-    """Return whether this public key's owner signed the data as that kind; invalid texts give False."""
+    """Return True if this public key's owner signed the data as that kind; invalid texts give False."""
     keys = _ed25519()
     try:
         key = keys.Ed25519PublicKey.from_public_bytes(base64.b64decode(public, validate=True))

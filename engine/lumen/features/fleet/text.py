@@ -11,7 +11,7 @@ SHORT = 12
 
 
 def fleet_lines(found: Mapping[str, Any]) -> Iterator[str]:
-    """Yield the rollout, each robot, and the centre's problems."""
+    """Yield lines about the rollout, each robot, and the centre's problems, from `Centre.overview`."""
     yield from _rollout(found["rollout"])
     yield from _trial(found["trying"])
     rows = [
@@ -41,7 +41,7 @@ def _trial(trying: Mapping[str, Any] | None) -> Iterator[str]:
 
 
 def log_lines(found: Mapping[str, Any]) -> Iterator[str]:
-    """Yield the last incidents, the count of each kind, and the measures of each bundle."""
+    """Yield lines about the last incidents, the count of each kind, and the measures of each bundle."""
     for row in found["incidents"]:
         at = iso_time(row["at"], "seconds")
         yield f"{at}  {row['robot']}: {row['kind']}: {row['text']}"

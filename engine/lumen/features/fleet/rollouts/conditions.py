@@ -59,7 +59,7 @@ def meant(source: str, measures: Mapping[str, object]) -> str:
 def holds(
     source: str, measures: Mapping[str, object], now: Mapping[str, float], before: Mapping[str, float]
 ) -> bool | None:
-    """Return whether a condition holds; None if it depends on an unknown measure (absent in `now` or `before`)."""
+    """Return True if a condition holds; None if it depends on an unknown measure (absent in `now` or `before`)."""
     guard = compile_guard(meant(source, measures))
     try:
         return bool(guard(Scope(context={"now": now, BEFORE: before})))

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 NOT = "!"
-"""The prefix in `!HASH`, which wants any bundle but that: the one that the robot ran before it."""
+"""The prefix in `!HASH`: a robot that runs that bundle should go back to the one that it ran before."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -16,7 +16,7 @@ class DesiredState:
     centre: str
     """The centre's id."""
     term: int
-    """The number of the centre's term: it grows when a centre takes over from another."""
+    """The number of the centre's term, which grows when a centre takes over from another."""
     version: int
     """Counts the centre's orders."""
     house: str
@@ -54,9 +54,9 @@ class FollowedOrder:
     term: int = 0
     version: int = 0
     wanted: str = ""
-    """The bundle that it should run, empty if it may keep its own."""
+    """The bundle that the robot should run (a hash, or `!HASH`); empty if it may keep its own."""
     trying: str = ""
-    """The bundle that it should try."""
+    """The bundle that the robot should try; empty for none."""
 
     def to_json(self) -> dict[str, Any]:
         """Return the order as JSON data."""
@@ -64,10 +64,10 @@ class FollowedOrder:
 
 
 def heed(followed: FollowedOrder, desired: DesiredState, robot: str) -> tuple[FollowedOrder, str]:
-    """Return the order that a robot follows after it received `desired`, and why it rejects `desired`: empty if it does
-    not.
+    """Return the order that a robot follows after it received `desired`, and why it rejects `desired`.
 
-    No clock matters: term and version decide which order is newer. The signature must have been verified.
+    The reason is empty if the robot does not reject it. No clock matters: term and version decide which order is newer.
+    The caller must have verified the signature.
     """
     wanted = desired.robots.get(robot, "")
     newer = replace(followed, centre=desired.centre, term=desired.term, version=desired.version, wanted=wanted)

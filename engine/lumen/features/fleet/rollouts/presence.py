@@ -25,7 +25,7 @@ HOURS = "hours"
 
 @dataclass(frozen=True, slots=True)
 class RobotPresence:
-    """The presence of a robot."""
+    """A robot's report about itself."""
 
     robot: str
     """The robot, as `HOUSE/ROBOT`."""
@@ -34,32 +34,33 @@ class RobotPresence:
     state: str = PROVED
     """The robot's state with the bundle `about`."""
     about: str = ""
-    """The bundle that it was ordered to run, else the running one."""
+    """The bundle that the robot was ordered to run; without such an order the running one."""
     trouble: str = ""
-    """The reason why it makes no progress."""
+    """The reason why the robot makes no progress; empty if it does."""
     wants: str = ""
-    """The hash of a bundle that it lacks."""
+    """The hash of a bundle that the robot should run or try but lacks; empty for none."""
     centre: str = ""
-    """The centre that it follows."""
+    """The id of the centre that the robot follows."""
     term: int = 0
-    """The term of the order that it follows."""
+    """The term of the order that the robot follows."""
     version: int = 0
     """The version of that order."""
     now: Mapping[str, float] = field(default_factory=dict)
     """Counts since `bundle` began to run."""
     before: Mapping[str, float] = field(default_factory=dict)
-    """Counts of the bundle before."""
+    """Counts of the bundle that ran before."""
     clock: float = 0.0
-    """The time of its clock [s since 1970]."""
+    """The time of the robot's clock [s since 1970]."""
     since: float = 0.0
-    """The time since which `bundle` runs [s since 1970]."""
+    """The time at which `bundle` began to run [s since 1970]."""
     played: int = 0
-    """The number of its last visits that were replayed with the bundle."""
+    """The number of the robot's last visits that were replayed with the bundle."""
     same: int = 0
     """The number of those that came out the same."""
     tried: Mapping[str, Any] = field(default_factory=dict)
-    """The result of a trial, empty without one: `bundle`, `verdict` (one of `TRIED`), `played`, `same`, and `why` it is
-    refused.
+    """The result of a trial, empty without one.
+
+    Its keys are `bundle`, `verdict` (one of `TRIED`), `played` and `same` (numbers of visits), and `why` it is refused.
     """
 
     def to_json(self) -> dict[str, Any]:
@@ -94,7 +95,7 @@ def _tried(data: Any) -> bool:
 
 
 def measures_from(data: Any) -> dict[str, float] | None:
-    """Return counts by their name, None if the data is invalid."""
+    """Return the counts in a message's data by name; None if the data is invalid."""
     return dict(data) if _measures(data) else None
 
 
@@ -105,7 +106,10 @@ def _measures(data: Any) -> bool:
 
 
 def rates(counts: Iterable[Mapping[str, float]], measures: Mapping[str, FleetMeasure]) -> dict[str, float]:
-    """Return each measure per hour of a robot, or per count of another measure; unknown ones are absent."""
+    """Return each measure of all these counts together: per hour of a robot, or per count of another measure.
+
+    A measure is absent if no counts with hours have it, or if the other measure is 0.
+    """
     rows = list(counts)
     found = {}
     for name, measure in measures.items():

@@ -16,13 +16,13 @@ from lumen.features.fleet.rollouts.trying import HeardRobots, begin_steps, fresh
 from lumen.features.fleet.settings import Fleet, RolloutPlan, StepTarget
 
 LONGEST_LOOK = 30.0
-"""The longest time that one tick may count [s], so that a changed clock or a dead centre skips no waiting."""
+"""The maximum time that one tick may count [s], so that a changed clock or a dead centre skips no waiting."""
 PATIENCE = 900.0
-"""The time beyond twice its pause after which a person is asked about an unproved step [s]."""
+"""The time beyond twice a step's pause after which a person is asked about a step that is not proved [s]."""
 
 
 def step(state: CentreState, fleet: Fleet, heard: HeardRobots, now: float) -> CentreState:
-    """Return the state at `now`; changes must be written to the journal before they are sent."""
+    """Return the state at `now` [s since 1970]; the caller must write changes to the journal before it sends them."""
     passed = min(max(now - state.looked, 0.0), LONGEST_LOOK) if state.looked else 0.0
     state = _released(_overruled(replace(state, looked=now), heard), heard)
     rollout = state.rollout
@@ -40,8 +40,10 @@ def step(state: CentreState, fleet: Fleet, heard: HeardRobots, now: float) -> Ce
 
 
 def begin(state: CentreState, fleet: Fleet, bundle: str, plan: RolloutPlan, now: float) -> CentreState:
-    """Return the state with a new rollout, which the next `step` begins. Raises ValueError with the reason if that is
-    impossible.
+    """Return the state with a new rollout, which the next `step` begins.
+
+    Raises ValueError with the reason if another rollout is under way, if a step has no robots, or if the centre gives
+    no orders any more.
     """
     if state.overruled:
         raise ValueError(state.overruled)
@@ -57,7 +59,10 @@ def begin(state: CentreState, fleet: Fleet, bundle: str, plan: RolloutPlan, now:
 
 
 def abort(state: CentreState, why: str) -> CentreState:
-    """Return the state with all robots sent back to the bundle wanted before, or else to the one that they ran."""
+    """Return the state with each robot of the rollout sent back to the proved bundle that it should run before.
+
+    A robot without such a bundle goes back to the files that it ran. Nothing changes if no rollout is under way.
+    """
     rollout = state.rollout
     if rollout is None or not rollout.under_way:
         return state
@@ -71,8 +76,10 @@ def abort(state: CentreState, why: str) -> CentreState:
 
 
 def decide(state: CentreState, decision: str, why: str = "") -> CentreState:
-    """Return the state after a person's decision: `paused` or `going`. Raises ValueError without a rollout under
-    way.
+    """Return the state after a person's decision, `PAUSED` or `GOING`.
+
+    If the rollout waits for a person, `GOING` accepts its trials or its present step. Raises ValueError without a
+    rollout under way.
     """
     rollout = state.rollout
     if rollout is None or not rollout.under_way:
@@ -88,7 +95,7 @@ def decide(state: CentreState, decision: str, why: str = "") -> CentreState:
 def take_over(state: CentreState, heard: HeardRobots) -> CentreState:
     """Return the state of a centre that replaces one that is gone, or continues from an old copy of its folder.
 
-    Its orders have a new term. A rollout under way waits for a person; robots that have not reported count as exposed.
+    Its orders have a new term. A rollout under way waits for a person.
     """
     term = max([state.term, *(row.presence.term for row in heard.values())]) + 1
     state = replace(state, term=term, version=state.version + 1, overruled="")
@@ -99,7 +106,7 @@ def take_over(state: CentreState, heard: HeardRobots) -> CentreState:
 
 
 def allowed(plan: RolloutPlan, at: int, fleet: Fleet) -> int:
-    """Return how many robots may run the bundle in that step: the most of this step and those before it."""
+    """Return the maximum number of robots that may run the bundle in step `at`: that of the largest step so far."""
     return max(_size(target, fleet) for target in plan.steps[: at + 1])
 
 
@@ -123,7 +130,7 @@ def _overruled(state: CentreState, heard: HeardRobots) -> CentreState:
 
 
 def _released(state: CentreState, heard: HeardRobots) -> CentreState:
-    """Return the state without exposed robots that have reported that they are back, or whose bundle is proved."""
+    """Return the state without exposed robots that have reported another bundle, or whose bundle is proved."""
 
     def back(robot: str, bundle: str, version: int) -> bool:
         said = heard[robot].presence if robot in heard else None
@@ -135,7 +142,7 @@ def _released(state: CentreState, heard: HeardRobots) -> CentreState:
 
 
 def _failed(rollout: Rollout, fleet: Fleet, heard: HeardRobots) -> str:
-    """Return why the bundle is bad, empty as long as nothing shows it."""
+    """Return why the bundle must be withdrawn, a robot's failure or `abort_if`; empty if nothing shows it."""
     for robot in rollout.assigned:
         said = heard[robot].presence if robot in heard else None
         new = said is not None and said.version > rollout.version

@@ -16,37 +16,37 @@ class Rollout:
     """A bundle that is being rolled out."""
 
     bundle: str
-    """Its hash."""
+    """The bundle's hash."""
     plan: RolloutPlan
     at: int = 0
     """The index of the present step."""
     assigned: tuple[str, ...] = ()
     """The robots that were given the bundle; their number only grows."""
     watched: float = 0.0
-    """The time for which most of them have run it in this step while the centre ran [s]."""
+    """The time for which most of these robots have run the bundle in this step while the centre ran [s]."""
     waited: float = 0.0
     """The time for which this step has been under way while the centre ran [s]."""
     state: str = GOING
     reason: str = ""
-    """The reason for its state."""
+    """The reason for `state`, which may be empty."""
     begun: float = 0.0
     """The time of its beginning [s since 1970]."""
     version: int = 0
-    """The version of the last order before it."""
+    """The version of the last order before the rollout or, after trials, before its first step."""
     prior: Mapping[str, str] = field(default_factory=dict)
-    """The bundles that were wanted of the assigned robots before."""
+    """The proved bundles that assigned robots should run before the rollout, by robot."""
     tried: bool = False
-    """Whether the trials before the first step are over."""
+    """True if the trials before the first step are over."""
 
     @property
     def under_way(self) -> bool:
-        """Whether it is neither aborted nor finished."""
+        """True if the rollout is neither aborted nor finished."""
         return self.state in UNDER_WAY
 
 
 @dataclass(frozen=True, slots=True)
 class CentreState:
-    """The state of a centre."""
+    """The state of a centre, which its journal keeps."""
 
     centre: str
     """The centre's id."""
@@ -57,25 +57,25 @@ class CentreState:
     wanted: Mapping[str, str] = field(default_factory=dict)
     """The bundle that each robot should run (a hash, or `!HASH`), by HOUSE/ROBOT."""
     exposed: Mapping[str, tuple[str, int]] = field(default_factory=dict)
-    """The robots that may run an unproved bundle: the bundle, and the version that withdrew it, 0 for none."""
+    """By robot, the unproved bundle that it may run, and the version of the order that withdrew it, 0 if none did."""
     proved: tuple[str, ...] = ()
     """The bundles whose rollout was finished."""
     pinned: tuple[str, ...] = ()
     """The robots that are left out of rollouts."""
     rollout: Rollout | None = None
     looked: float = 0.0
-    """The time of the last tick [s]."""
+    """The time of the last tick [s since 1970]."""
     overruled: str = ""
     """Why this centre gives no more orders, empty if it does."""
     trying: str = ""
-    """The bundle that all robots should try."""
+    """The bundle that all robots should try; empty for none."""
 
     def attempt(self, bundle: str) -> "CentreState":
-        """Return the state with a bundle that all robots try, empty for none; a change has a new version."""
+        """Return the state with a bundle that all robots should try, empty for none; a change increases the version."""
         return self if bundle == self.trying else replace(self, trying=bundle, version=self.version + 1)
 
     def want(self, wanted: Mapping[str, str]) -> "CentreState":
-        """Return the state with these robots' bundles changed; a change has a new version."""
+        """Return the state with these robots' wanted bundles changed; a change increases the version."""
         if wanted.items() <= self.wanted.items():
             return self
         return replace(self, wanted={**self.wanted, **wanted}, version=self.version + 1)
@@ -83,7 +83,7 @@ class CentreState:
 
 @dataclass(frozen=True, slots=True)
 class HeardPresence:
-    """A presence and the centre's time at its arrival [s]."""
+    """A presence, and the centre's time at its arrival [s since 1970]."""
 
     presence: RobotPresence
     at: float

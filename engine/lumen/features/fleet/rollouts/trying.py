@@ -13,7 +13,7 @@ from lumen.features.fleet.settings import Fleet
 FRESH = 60.0
 """The time for which a robot counts as present after its last report [s]."""
 TRYING = 600.0
-"""The time that present robots may try a bundle before a person is asked [s]."""
+"""The maximum time for which present robots may try a bundle before a person is asked [s]."""
 
 HeardRobots = Mapping[str, HeardPresence]
 
@@ -21,11 +21,11 @@ HeardRobots = Mapping[str, HeardPresence]
 def tried(
     state: CentreState, rollout: Rollout, fleet: Fleet, heard: HeardRobots, now: float, passed: float
 ) -> CentreState:
-    """Return the state at `now`: the first step begins once all present robots have tried the bundle and none refuses
-    it.
+    """Return the state of a rollout's trials at `now`, `passed` [s] after the last tick.
 
-    If a robot refuses it, or the trials take too long, a person decides. Visits that differ do not stop it, because
-    they may be the purpose of the bundle.
+    The first step begins once all present robots have tried the bundle and none refuses it. If a robot refuses it, or
+    the trials take too long, a person decides. Visits that differ do not stop the rollout, because they may be the
+    purpose of the bundle.
     """
     there = _there(state, rollout, fleet, heard, now)
     came = outcomes(rollout.bundle, there)
@@ -50,18 +50,18 @@ def begin_steps(state: CentreState, rollout: Rollout) -> CentreState:
 
 
 def outcomes(bundle: str, there: Mapping[str, RobotPresence]) -> dict[str, Mapping[str, object]]:
-    """Return the result of each robot that has tried that bundle."""
+    """Return the result of each robot that has tried that bundle, as in `RobotPresence.tried`."""
     return {robot: said.tried for robot, said in there.items() if said.tried.get("bundle") == bundle}
 
 
 def counted(bundle: str, heard: HeardRobots) -> dict[str, int]:
-    """Return the number of robots for each verdict."""
+    """Return the number of robots with each verdict about a bundle."""
     rows = outcomes(bundle, {robot: row.presence for robot, row in heard.items()}).values()
     return {verdict: sum(row["verdict"] == verdict for row in rows) for verdict in TRIED}
 
 
 def fresh(heard: HeardRobots, robot: str, now: float) -> RobotPresence | None:
-    """Return a robot's presence if it is recent, else None."""
+    """Return a robot's presence if it came within the last `FRESH` seconds, else None."""
     found = heard.get(robot)
     return found.presence if found and abs(now - found.at) <= FRESH else None
 
