@@ -18,13 +18,13 @@ from lumen.robot.joint_ways import begun_from
 from lumen.robot.skill_runner import SkillRunner
 
 SHADOW = ""
-"""The id of the wrapped robot's commands in the executor of features' verbs: there they end verbs, or allow them."""
+"""The id of the wrapped robot's commands in the executor of features' verbs, which they end or allow."""
 
 Ability = TypeVar("Ability")
 
 
 class BoundedRobot(CheckedRobot):
-    """Passes commands to `robot` within the limits and speeds of `body`, and refuses those that it can't perform.
+    """Passes commands to `robot` within the limits and speeds of `body`; refuses those that `body` can't perform.
 
     If the robot senses its joints, a motion is delayed until they can reach its first key in time. Verbs of features
     are performed here unless the robot does that itself (`PerformsVerbs`): they wait for each other's parts of the
@@ -68,7 +68,7 @@ class BoundedRobot(CheckedRobot):
 
     @property
     def busy(self) -> bool:
-        """True while a verb of a feature is under way here."""
+        """Whether a verb of a feature is under way here."""
         return self._skills.busy
 
     def close(self) -> None:
@@ -92,7 +92,7 @@ class BoundedRobot(CheckedRobot):
 
 
 def ability(robot: Robot, kind: type[Ability]) -> Ability | None:
-    """Return the robot, or the one that it wraps, if it has that ability, else None."""
+    """Return the robot, or the robot that it wraps, if it has the ability `kind`; else None."""
     own = robot.robot if isinstance(robot, CheckedRobot) else robot
     return own if isinstance(own, kind) else None
 

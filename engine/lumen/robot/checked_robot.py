@@ -16,9 +16,10 @@ def of_own_robot(what: str) -> LumenError:
 
 
 class CheckedRobot:
-    """Passes everything on to `robot`; `fault` makes the error that ends the run if the robot returns something wrong.
+    """Passes everything on to `robot`, and checks the types of the values that it returns.
 
-    `fault` is called with what the robot did, such as "returned None from `poll`: it must return events".
+    `fault` makes the error that ends the run after a wrong value. It is called with a description such as "returned
+    None from `poll`: it must return events".
     """
 
     def __init__(self, robot: Robot, fault: Callable[[str], LumenError] = of_own_robot) -> None:

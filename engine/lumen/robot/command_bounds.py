@@ -16,7 +16,7 @@ _log = logging.getLogger(__name__)
 
 
 class CommandBounds:
-    """Brings commands within the limits and speeds of a body, and refuses what no robot of that body can perform.
+    """Brings commands within the limits and speeds of a body; refuses those that no robot of that body can perform.
 
     Each change of a command is logged once, except for aims: a stream of them would fill the log.
     """

@@ -1,7 +1,7 @@
-"""How the parameters of a command are read from the bus, and which values a body can perform.
+"""Reads the parameters of commands from the bus, and checks the values that a body can perform.
 
-Each `read_…` makes a command from its parameters. Each `check_…` raises BadCommandError for a command that no robot of
-that body can perform, as `read_…` does for parameters that make no such command.
+Each `read_…` returns a command from its parameters, and each `check_…` returns nothing. Both raise BadCommandError for
+a command that no robot of that body can perform.
 """
 
 import json
@@ -190,7 +190,7 @@ def _judge(schema: str) -> JsonSchema:
 
 
 def check_arguments(command: Do) -> None:
-    """Raise BadCommandError if no feature or project has that verb, or its arguments don't fit its row."""
+    """Raise BadCommandError if no feature or project has that verb, or its arguments do not fit its row."""
     schema = argument_schema(added_verb(command))
     if _judge(json.dumps(schema)).fits(dict(command.arguments)):
         return

@@ -22,7 +22,7 @@ MOTION_NAMES_2015 = {"dancing": "dance", "singing": "sing", "photopose": "photo"
 STOPPING_METHODS = ("rest", "stopmove", "stop")
 UNSUPPORTED_METHODS = ("setstiffnesses", "setwalkarmsenabled", "sendremotebuffertooutput")
 MAX_ID_LENGTH = 200
-"""Characters of an id that are kept."""
+"""The number of characters of an id that are kept."""
 
 
 def encode_command(command: RobotCommand) -> dict[str, Any]:
@@ -52,7 +52,7 @@ def method_of(body: Any) -> str:
 
 
 def own_id(body: Any) -> str:
-    """Return the id that its sender gave a command, cut to MAX_ID_LENGTH; empty if it gave none."""
+    """Return the id that the sender gave a command, cut to MAX_ID_LENGTH; empty if it gave none."""
     id = body.get("id") if isinstance(body, Mapping) else None
     return id[:MAX_ID_LENGTH] if isinstance(id, str) else ""
 
@@ -102,7 +102,7 @@ def _hand(p: CommandParameters, opening: float) -> Aim:
 
 
 def _move_toward(p: CommandParameters) -> Move:
-    """Return the walk at these speeds, which are fractions of the maximum as in NAOqi: here that of the brisk pace."""
+    """Return the walk at speeds that are fractions of the greatest, as in NAOqi; here that of the brisk pace."""
     from lumen.motion.gait import fastest_of  # imports numpy, which only this command needs
 
     given = p.number("x", 0.0), p.number("y", 0.0), p.turn()

@@ -16,9 +16,10 @@ PoseSource = Callable[[], Mapping[str, float]]
 
 
 class CommandParameters:
-    """The `parameter` of a command: each method reads one, and raises BadCommandError for one that is missing or wrong.
+    """The `parameter` of a command.
 
-    Names compare case-insensitively. `pose` is called only for a command that is relative to the present angles.
+    Each method reads one parameter, and raises BadCommandError if it is missing or wrong. Names compare
+    case-insensitively. `pose` is called only for a command that is relative to the present angles.
     """
 
     def __init__(self, method: str, data: Any, project: Project, pose: PoseSource) -> None:
@@ -53,11 +54,11 @@ class CommandParameters:
         return code
 
     def turn(self) -> float:
-        """Return the turn, also under the name `tetha`, a misspelling of 2015."""
+        """Return the turn: `tetha`, a misspelling of 2015, else `theta`, else 0."""
         return self.number("tetha", self.number("theta", 0.0))
 
     def joints(self) -> dict[str, float]:
-        """Return `angles` by `jointNames`; a single value needs no list."""
+        """Return the `angles` by `jointNames`; a single name and a single angle need no list."""
         names, values = _listed(self.values.get("jointnames")), _listed(self.values.get("angles"))
         if not names or len(names) != len(values):
             raise BadCommandError(f"`{self.method}` needs as many `angles` as `jointNames`, and at least one")

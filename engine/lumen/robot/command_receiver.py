@@ -94,8 +94,8 @@ class CommandReceiver:
     Commands that stop the robot are performed each time that they are sent, with any id; only a message that the bus
     delivers a second time is not.
 
-    `clock` [s] measures how long they have waited. Commands that move the robot are refused while a person keeps it
-    still (`hold`).
+    `clock` [s] measures the time that commands have waited. Commands that move the robot are refused while a person
+    keeps it still (`hold`).
     """
 
     def __init__(
@@ -165,7 +165,7 @@ class CommandReceiver:
         self.guard.drops.tell()
 
     def answer(self, event: Event) -> bool:
-        """Report the end of a command from the bus; return True if the event is one."""
+        """Report the end of a command from the bus; return whether the event is such an end."""
         kind, _, id = event.name.partition(".command.")
         data = event.data if isinstance(event.data, dict) else {}
         reason = data.get("reason") or data.get(MISSED, "")
@@ -240,7 +240,7 @@ class CommandReceiver:
             return self._taken(self._received)
 
     def _full(self, *, own: bool) -> str:
-        """Return why no further command, of the behaviour (`own`) or of other modules, may wait; empty if it may."""
+        """Return why no further command, of the behaviour (`own`) or of other modules, may wait; empty if one may."""
         if own:
             waiting, most = self._own_waiting, MAX_WAITING_OWN
         else:
@@ -375,7 +375,7 @@ class CommandReceiver:
         return f"{FOREIGN}{next(self._numbers)}"
 
     def _angles(self) -> dict[str, float]:
-        """Return the present angles of the joints."""
+        """Return the present angles of the joints [rad]; empty if the robot does not sense them."""
         reading = self._robot.read(Sense.JOINT)
         return dict(zip(reading.names, reading.angles, strict=True)) if isinstance(reading, Joints) else {}
 

@@ -25,19 +25,21 @@ class CommandRecord:
     id: str = ""
     """The id from its sender; empty if the sender gave none, as the modules of 2015."""
     method: str = ""
+    """The method of its body in lower case; empty if unknown."""
     at: str = ""
-    """The robot's id of it; empty until the robot has it."""
+    """The id under which the robot has the command; empty until then."""
     state: str = ""
+    """The last reported state, one of the constants above; empty before the first report."""
     reason: str = ""
-    """Why it failed."""
+    """Why the command failed, or which joint missed its goal; else empty."""
     result: Mapping[str, Any] | None = None
     """The result of a verb of a feature."""
     parts: frozenset[str] = frozenset()
-    """The parts of the body that it owns."""
+    """The parts of the body that the command owns."""
     takes: float = 0.0
-    """Its estimated duration [s]."""
+    """The estimated duration of the command [s]."""
     body: Any = None
-    """The body of its message, None if only the id is known."""
+    """The body of its message; None if only the id is known."""
 
     @property
     def over(self) -> bool:
@@ -45,7 +47,7 @@ class CommandRecord:
 
     @property
     def known_as(self) -> str:
-        """The id under which it is reported."""
+        """The id under which the command is reported."""
         return self.id or self.asker.correlation_id or self.at
 
     def report(self) -> dict[str, Any]:

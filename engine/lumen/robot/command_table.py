@@ -1,4 +1,4 @@
-"""What every robot needs to know about a command, apart from how it performs the command: a row for each.
+"""The properties of each command that every robot needs, however it performs the command: a row for each.
 
 A row has the parts of the body that the command owns, its rank among waiting commands, its duration on the recording
 robot, and its form on the bus. Robots that move perform it in their `skills.py`.
@@ -235,7 +235,7 @@ _SOUND = CommandRow(
     check=check_sound,
     moves=False,
 )
-"""It waits for no part of the body: a bell rings while the robot speaks."""
+"""A sound waits for no part of the body: a bell rings while the robot speaks."""
 _AIM = CommandRow(
     Aim,
     "aim",
@@ -260,7 +260,7 @@ _LIVE = CommandRow(
     owns(),
     moves=False,
 )
-"""It sets a style and moves nothing by itself, so it is allowed while a person keeps the robot still."""
+"""This command sets a style and moves nothing by itself, so it is allowed while a person keeps the robot still."""
 
 _DO = CommandRow(
     Do,

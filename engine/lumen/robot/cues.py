@@ -6,7 +6,7 @@ from lumen.language.events import CUE, Event
 from lumen.language.motions import SKILL_CUE, Cue, MotionDefinition
 
 NOTIFIED_KINDS = ("say", "sound", SKILL_CUE)
-"""Kinds of cues that a robot raises as events; the others it performs itself."""
+"""The kinds of cues that a robot raises as events; it performs the others itself."""
 
 EventSink = Callable[[Event], None]
 

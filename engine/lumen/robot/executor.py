@@ -22,7 +22,7 @@ from lumen.robot.command_table import row_of
 FOREIGN = "m"
 """The prefix of the ids of commands that are not from the behaviour."""
 MAX_UNREAD_STARTS = 1_000
-"""The most starts of commands that are kept while `begun` is not called."""
+"""The number of starts of commands that are kept while `begun` is not called."""
 
 
 class Activity(Protocol):

@@ -25,7 +25,7 @@ SMOOTH_PEAK = 1.5
 
 
 def way_duration(way: Mapping[str, float], body: Body, least: float) -> float:
-    """Return the time [s] of a smooth way of `way` [rad] for each joint: `least`, or what the slowest joint needs."""
+    """Return the time [s] in which joints move smoothly by `way` [rad]: `least`, or what the slowest joint needs."""
     slowest = max((abs(far) / body.joints[name].speed for name, far in way.items()), default=0.0)
     return max(least, slowest * SMOOTH_PEAK / SPEED_SHARE)
 

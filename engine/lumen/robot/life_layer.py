@@ -96,19 +96,19 @@ class LifeLayer:
         self.heard(yaw + turned.get("yaw", 0.0), pitch + turned.get("pitch", 0.0), now)
 
     def say(self, said: Say, duration: float, now: float, words: Sequence[WordTime] = ()) -> None:
-        """Note that a text of `duration` [s] begins; `words` has the time at which each word begins, if known."""
+        """Record that a text of `duration` [s] begins; `words` has the time at which each word begins, if known."""
         if now >= self._said_until + ANSWER_PAUSE:
             self._answers, self._answered_at = self._answers + 1, now
         self._said_until = now + duration
         self.speech.say(said, duration, now, words)
 
     def hush(self, now: float) -> None:
-        """Note that the speech has ended."""
+        """Record that the speech has ended."""
         self._said_until = min(self._said_until, now)
         self.speech.hush(now)
 
     def led(self, joints: Collection[str], now: float) -> None:
-        """Note an external aim of these joints; if one is of the head, life does not move the head for LED_FOR [s]."""
+        """Record an external aim of these joints; one of the head keeps life from moving the head for LED_FOR [s]."""
         if any(turn.joint in joints for turn in self._turns.values()):
             self._led_at = now
 

@@ -13,7 +13,7 @@ from lumen.language.robots import Body
 MAX_MOTION_DURATION = 600.0
 """The longest motion from the bus [s]."""
 MAX_MOTION_KEYS = 20_000
-"""The most keys and cues of one motion."""
+"""The greatest number of keys and cues of one motion."""
 LIMIT_TOLERANCE = 1e-6
 """An angle may exceed its joint's limit by this, because decimals are rounded [rad]."""
 

@@ -40,7 +40,7 @@ class HoldListener:
 
 
 class PersonHold:
-    """The person who stopped the robot (`stopped`), None if it may move.
+    """The person who stopped the robot (`stopped`); None if it may move.
 
     While the robot is held, a command that moves it is refused, whoever sends it. The hold ends with `release`, or when
     the behaviour moves the robot after a hand was on its head. While the behaviour lets the robot rest, commands of
@@ -70,7 +70,7 @@ class PersonHold:
             self._touched = True
 
     def admit(self, command: RobotCommand, *, behavior: bool) -> str:
-        """Return why a command may not begin, empty if it may; `behavior` is True for commands of the behaviour."""
+        """Return why a command may not begin, empty if it may; `behavior` is whether the behaviour sends it."""
         if not row_of(command).moves:
             self._rests = self._rests or (behavior and isinstance(command, Rest))
             return ""

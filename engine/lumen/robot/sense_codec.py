@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 NO_READING = KeyError, TypeError, ValueError, OverflowError
-"""The errors of a decoder that got a body without a reading."""
+"""The errors of a decoder that received a body without a reading."""
 JPEG_QUALITY = 80
 RECORDING_RATE = 16_000
 """The number of samples per second of a recording."""
@@ -38,7 +38,7 @@ def encode_reading(sense: str, reading: OtherReading) -> dict[str, Any]:
 
 
 def decode_reading(sense: str, body: Any, names: Sequence[str]) -> OtherReading | None:
-    """Return the reading in a body of that sense; None if it has none, or is of a robot with other joints.
+    """Return the reading in a body of that sense; None if the body has none, or is of a robot with other joints.
 
     For images it is always None, because they are for other modules. Raises LumenError with the name of the installed
     package if its code is faulty.

@@ -39,14 +39,15 @@ def _date() -> str:
 class RobotServer:
     """A robot on a bus, as the project's routes `image`, `joint`, `sonar`, `tactile` and `battery` say.
 
-    The owner of the clock calls `sample` at each tick; that reads the senses that are due and begins the commands that
+    The owner of the clock calls `sample` at each tick, which reads the senses that are due and begins the commands that
     have arrived, without waiting. Readings except images are sent in the order they were taken, so a simulation with
-    one seed sends the same messages in the same order; `settle` waits for them, and once for a first image, which
-    takes as long as several others, because it starts OpenGL. `date` gives the date of images; `clock` [s] measures how
-    long a command has waited: the time of the modules, whatever the robot's clock shows. `listeners` are notified of
-    commands from the bus. A robot that a person stopped does not move (`hold`). A `direct` one publishes readings
-    except images in `sample` itself, for clocks that wait for the receivers: threads would have to switch at every
-    tick.
+    one seed sends the same messages in the same order. `settle` waits for them, and once for a first image, which takes
+    as long as several others because it starts OpenGL.
+
+    `date` returns the date of images. `clock` measures the wait of commands [s] by the modules' time, whatever the
+    robot's clock shows. `listeners` are notified of commands from the bus. A robot that a person stopped does not move
+    (`hold`). With `direct`, `sample` itself publishes readings except images, for clocks that wait for the receivers:
+    threads would have to switch at every tick.
     """
 
     def __init__(
@@ -85,12 +86,12 @@ class RobotServer:
 
     @property
     def counts(self) -> Mapping[str, PublishCounts]:
-        """Return the counts of readings by route: the route of each sense, and those that are `of` one."""
+        """The counts of readings by route: the route of each sense, and each route that is `of` a sense."""
         return {name: broadcast.count for name, broadcast in self._broadcasts.items()}
 
     @property
     def due(self) -> float:
-        """Return when the next reading is due [s]; infinity if no sense is on."""
+        """When the next reading is due [s]; infinite if no sense is on."""
         return min((self._next[name] for name in self._routes if not self._broadcasts[name].count.off), default=inf)
 
     @property
@@ -174,7 +175,7 @@ class RobotServer:
             _log.warning("a message of the robot on `%s` was not sent: %s", route, error)
 
     def _wanted(self, route: Route) -> bool:
-        """Return False for an image, or a route `of` a sense, without subscribers, to save rendering and encoding."""
+        """Return whether a reading is needed: an image, or a route `of` a sense, is not without subscribers."""
         if not route.of and route.sense != Sense.IMAGE:
             return True
         return self._listeners is None or self._listeners.heard(route.key_for(self._project.robot))

@@ -177,7 +177,7 @@ class RunningSkill:
             result, failure = self._checked(performer.perform(self)), ""
         except RobotError as error:
             result, failure = {}, str(error)
-        except BaseException as error:  # whatever it is, it must not begin again
+        except BaseException as error:  # the watched thread would begin the verb again
             _log.exception("the performer of `%s` failed", self.skill)
             result, failure = {}, f"`{self.skill}` failed: {error!r}"
         with self._changed:
@@ -185,7 +185,10 @@ class RunningSkill:
             self._changed.notify_all()
 
     def _checked(self, returned: Any) -> Mapping[str, Any]:
-        """Return a result as the journal keeps it. Raises RobotFailedError if it does not fit the schema of the row."""
+        """Return a result as JSON data, completed by the defaults of the row.
+
+        Raises RobotFailedError if it is not JSON data that fits the schema of the row.
+        """
         try:
             result = {} if returned is None else json.loads(json.dumps(returned, allow_nan=False))
         except (TypeError, ValueError) as error:

@@ -27,8 +27,8 @@ _log = logging.getLogger(__name__)
 class RobotHost(CommandListener):
     """Lumen Server for a robot, and for the hall around it if that is simulated.
 
-    The owner of the clock calls `tick`, which publishes and returns the robot's answers and perceptions since.
-    `listeners` are notified of commands from the bus.
+    The owner of the clock calls `tick`, which publishes and returns the robot's answers and perceptions since the last
+    call. `listeners` are notified of commands from the bus.
     """
 
     def __init__(

@@ -65,11 +65,11 @@ class _Pending:
     cancelled: bool = False
     """Whether the brain has cancelled it."""
     held: bool = False
-    """Whether it waits until the robot has a command that stops it."""
+    """Whether it waits until the robot has received a command that stops it."""
 
 
 Delegate = Callable[[str, Perform], bool]
-"""Lets another module perform a motion under that id; returns False if there is no such module."""
+"""A function that lets another module perform a motion under an id; it returns False if no such module exists."""
 
 
 class RemoteRobot:
