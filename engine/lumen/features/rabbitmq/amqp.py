@@ -101,7 +101,10 @@ class AmqpBus(Bus):
             transport.consumer.prepare(coming)
 
     def subscribe(self, pattern: str, handler: MessageHandler) -> Callable[[], None]:
-        """Call the handler with the messages of a pattern; return a function that unsubscribes it. Raises BusError."""
+        """Call the handler with the messages of a pattern; return a function that unsubscribes it.
+
+        Raises BusError if the bus is closed, the pattern is no valid key, or the broker refuses.
+        """
         if self._closed:
             raise BusClosedError("the bus is closed: subscribing is no longer possible")
         check_subscription(pattern, handler)
@@ -152,8 +155,10 @@ class AmqpBus(Bus):
             transport.publisher.returned = handler
 
     def reply(self, message: Message, body: Any) -> None:
-        """Reply to a message: a text is sent unchanged, as modules of 2015 expect `command finished`; all else as JSON.
-        Raises BusError if the bus is closed.
+        """Reply to a message, unless it expects no reply.
+
+        A text is sent unchanged, as modules of 2015 expect `command finished`; all else as JSON. Raises BusError if the
+        bus is closed.
         """
         if not message.reply_to:
             return
@@ -163,7 +168,7 @@ class AmqpBus(Bus):
         self._transport.answer(message.reply_to, message.correlation_id, body, self.sender)
 
     def close(self) -> None:
-        """Deliver published messages, also to our own subscribers, within 5 s, and end."""
+        """Deliver published messages, also to our own subscribers, within CLOSE_TIMEOUT, and end."""
         if self._closed:
             return
         self._closed = True

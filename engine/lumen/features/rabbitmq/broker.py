@@ -125,7 +125,7 @@ def shortage(reason: str) -> str:
 
 
 def _authority(parts: SplitResult) -> tuple[str, str]:
-    """Return the file of trusted certificates, from `?ca=FILE`, and the URL without it."""
+    """Return the file of trusted certificates in `?ca=FILE`, else an empty string; and the URL without it."""
     query = dict(parse_qsl(parts.query))
     authority = query.pop("ca", "")
     return authority, parts._replace(query=urlencode(query)).geturl()

@@ -50,7 +50,7 @@ class OutageLog:
         return next(iter(self._blocked.copy().values()), "")
 
     def block(self, connection: str, what: str) -> None:
-        """Note that the broker, short of `what`, blocks this connection; an empty `what` ends that."""
+        """Record that the broker lacks `what` and blocks this connection; an empty `what` ends the block."""
         with self._changing:
             before = bool(self._blocked)
             self._blocked.pop(connection, None)
@@ -63,7 +63,7 @@ class OutageLog:
             _log.warning("the broker at %s accepts messages again", self._address)
 
     def lost(self, connection: str, what: str, error: BaseException) -> None:
-        """Note that a connection is lost, and log it."""
+        """Record that a connection is lost, and log it."""
         with self._changing:
             self._blocked.pop(connection, None)
             new = not self._away or what not in self._logged
@@ -80,7 +80,7 @@ class OutageLog:
             _log.warning("the broker at %s: %s", self._address, what)
 
     def back(self, connection: str) -> None:
-        """Note that a connection is back; log it if no other is lost."""
+        """Record that a connection is back; log it if no other is lost."""
         with self._changing:
             was = connection in self._away
             self._away.discard(connection)
@@ -132,7 +132,7 @@ class BrokerConnection:
         raise NotImplementedError
 
     def process(self, seconds: float) -> None:
-        """Process the connection's events for at most so long [s], then run other threads' requests."""
+        """Process the connection's events for at most `seconds`, then run other threads' requests."""
         self.connection.turn(seconds)
         self.connection.work()
 

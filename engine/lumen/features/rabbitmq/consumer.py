@@ -36,11 +36,10 @@ _log = logging.getLogger(__name__)
 
 
 class Consumer(BrokerConnection):
-    """Passes deliveries within their rate to `receive`, and refused ones that must arrive to `refused`; neither may
-    block.
+    """Passes deliveries within their rate to `receive`, and refused ones that must arrive to `refused`.
 
-    The broker sends `PREFETCH` messages ahead for each subscription and keeps a bounded number more, which bounds the
-    memory on both sides. `handled` acknowledges.
+    Neither function may block. The broker sends `PREFETCH` messages ahead for each subscription and keeps a bounded
+    number more, which bounds the memory on both sides. `handled` acknowledges deliveries.
     """
 
     def __init__(
@@ -75,7 +74,7 @@ class Consumer(BrokerConnection):
         self.process(TURN_TIME)
         self.unreadable.tell()
         self.intake.drops.tell()
-        if self.intake.flooded:  # read the meantime's messages at once: a read costs as much as many messages
+        if self.intake.flooded:  # one read costs as much as many messages, so let them gather
             self.intake.flooded = False
             self.ending.wait(FLOOD_PAUSE)
         return not self.ending.is_set()
@@ -157,7 +156,7 @@ class Consumer(BrokerConnection):
         return self.join(timeout)
 
     def _later(self, work: Callable[[], None]) -> bool:
-        """Let the connection's thread run this; return False if there is no connection."""
+        """Let the connection's thread run `work`; return False if there is no connection."""
         connection = self.connection
         if connection is None:
             return False

@@ -71,7 +71,7 @@ class QueueDeclarer:
     def _declare_quorum(self, channel: AskedChannel, queue: Queue) -> str:
         """Declare a quorum queue, and bind it once a crash of the broker can no longer lose its content.
 
-        If the broker is killed before that, it has no log for the queue and never answers for it; so it is declared
+        A broker that is killed before that has no log for the queue and never answers for it, so the queue is declared
         anew.
         """
         if queue.name in self.settling:

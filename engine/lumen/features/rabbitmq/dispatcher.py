@@ -107,7 +107,7 @@ class Dispatcher:
         return not late and not (route.keep and subscription.taken - subscription.handled >= route.keep)
 
     def _new(self, subscription: Subscription, delivery: Delivery) -> bool:
-        """Return whether it was not handled before; a message without an id is recognized by its whole content.
+        """Return whether a delivery was not handled before; one without an id is recognised by its whole content.
 
         A copy that the broker or its sender sent again, because it was not confirmed, does not count as lost. A message
         without a time may also be a new one of a sender that restarted its ids; in that case a stop is handled twice.

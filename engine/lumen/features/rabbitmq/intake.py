@@ -8,27 +8,27 @@ from lumen.upkeep.drops import DropLog
 from lumen.upkeep.ratelimit import RateLimiter
 
 ANSWERED_RATE = 10.0
-"""The number of dropped messages per second, among those that must arrive, that are answered and put aside; further
-ones are only counted.
+"""The rate at which dropped messages of a key, if they must arrive, are answered and put aside [1/s].
+
+Further ones are only counted.
 """
 SPENT_BATCH = 32
-"""The number of dropped messages after which the broker is asked for more; at most half of what it sends ahead."""
+"""The number of dropped messages after which more are requested from the broker; at most half of its prefetch limit."""
 
 _log = logging.getLogger(__name__)
 
 Later = Callable[[float, Callable[[], None]], object]
-"""Calls a function on the same thread after so many seconds."""
+"""A function that calls another one on the same thread after a time [s]."""
 
 
 class Intake:
-    """Passes at most as many deliveries per second to `receive` as their route accepts (`Route.rate`); all on one
-    thread.
+    """Passes at most as many deliveries per second to `receive` as their route accepts (`Route.rate`).
 
-    Messages that must arrive are counted per sender, so that one sender can't crowd out the commands of another. Keys
-    without a route have no limit. If there is too much telemetry, the newest message waits until there is room
-    (`later`), because it holds the current values; a newer one replaces it. Excess messages that must arrive are
-    dropped, and some of them are passed to `refused` with the reason. Dropped messages are counted in `drops`, under
-    their key.
+    All methods run on one thread. Messages that must arrive are counted per sender, so that one sender can't crowd out
+    the commands of another. Keys without a route have no limit. If there is too much telemetry, the newest message
+    waits until there is room (`later`), because it holds the current values; a newer one replaces it. Excess messages
+    that must arrive are dropped, and some of them are passed to `refused` with the reason. Dropped messages are counted
+    in `drops`, under their key.
     """
 
     def __init__(
@@ -56,7 +56,7 @@ class Intake:
             self._hold(place, delivery, wait, rate)
 
     def forget(self) -> None:
-        """Forget what is held back: on a new connection it is delivered again, or is lost with its queue."""
+        """Forget the held deliveries: a new connection delivers them again, or they are lost with their queue."""
         self._held.clear()
 
     def _wait(self, delivery: Delivery, rate: float) -> float:

@@ -32,10 +32,11 @@ class OutgoingMessage(NamedTuple):
     reply_to: str = ""
     correlation_id: str = ""
     deadline: float | None = None
-    """The time after which it is discarded [s, monotonic], None for never."""
+    """The time after which it is discarded [s, monotonic]; None for never."""
     type: str = ""
+    """AMQP's `type` of the message; empty for none."""
     keep: int = 0
-    """The number of messages of the same key that may wait, the newest; 0 for all."""
+    """The number of the key's newest messages that may wait; 0 for any number."""
     must: bool = False
     """Whether it is sent until the broker confirms it; a receiver recognises a repetition by the id in `origin`."""
     origin: MessageOrigin = UNKNOWN_ORIGIN

@@ -36,7 +36,10 @@ class PackedBody(NamedTuple):
 
 
 def packed(body: Any, content_type: str) -> PackedBody | None:
-    """Return the body in that form; None if it is not an image or joints, or has fields that the form can't hold."""
+    """Return the body in that form; None if the form can't hold it.
+
+    It holds images, or joints, of at most MAX_BODY_BYTES and with plain other fields.
+    """
     if not isinstance(body, Mapping):
         return None
     found = _image(body) if content_type == JPEG_TYPE else _joints(body) if content_type == FLOATS_TYPE else None

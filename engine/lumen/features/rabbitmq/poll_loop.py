@@ -33,7 +33,7 @@ class PollLoop(AbstractSelectorIOLoop):  # type: ignore[misc]  # pika is not typ
         self.add_handler(self._hearing.fileno(), self._heard, EVENT_READ)
 
     def wait(self, seconds: float) -> Events:
-        """Wait at most so many seconds for events, or not at all if a callback is pending; return them, unhandled."""
+        """Wait at most `seconds` for events, not at all if a callback is pending; return them, unhandled."""
         if self._callbacks:
             seconds = 0.0
         elif self._timers:
@@ -53,13 +53,13 @@ class PollLoop(AbstractSelectorIOLoop):  # type: ignore[misc]  # pika is not typ
                 work()
 
     def add_callback(self, callback: Callable[[], object]) -> None:
-        """From any thread: run this in the next `call`, and make `wait` return."""
+        """Run `callback` in the next `call`, and make `wait` return. Any thread may call this."""
         self._callbacks.append(callback)
-        with suppress(OSError):  # full means that it is awake already; or it is closed
+        with suppress(OSError):  # a full socket wakes `wait` already; a closed one need not
             self._waking.send(b"x")
 
     def call_later(self, delay: float, callback: Callable[[], object]) -> Any:
-        """Run this in a `call` after so many seconds; return the handle for `remove_timeout`."""
+        """Run `callback` in a `call` after `delay` [s]; return the handle for `remove_timeout`."""
         timer = [callback]
         heapq.heappush(self._timers, (time.monotonic() + delay, next(_numbers), timer))
         return timer

@@ -24,14 +24,14 @@ from lumen.features.rabbitmq.poll_loop import PollLoop
 from lumen.features.rabbitmq.wire import MessageReader, WireConnection
 
 STALL_TIME = 0.5
-"""A turn that takes so much longer than planned [s] means that this process was suspended."""
+"""The excess of a turn over its planned time that means that this process was suspended [s]."""
 
 
 class TurnClock:
     """Follows the turns of a connection, to estimate when messages arrived.
 
-    A process that was suspended during one turn may see what arrived then only in the next, so both count from the
-    first one's beginning.
+    A process that was suspended during one turn may read the messages of that time only in the next turn, so those of
+    both turns count as arrived at the beginning of the first.
     """
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
@@ -46,8 +46,9 @@ class TurnClock:
         self._begun, self._most = now, most
 
     def arrival(self) -> float:
-        """Return the earliest time that data received now can have arrived [s, by `clock`]: now, unless the process was
-        suspended.
+        """Return the earliest time at which data received now can have arrived [s, by `clock`].
+
+        It is the present time, unless the process was suspended.
         """
         now = self._clock()
         if self._stood_since is not None:
@@ -111,16 +112,18 @@ class PolledConnection:
         self.until(lambda: answers)
 
     def publish(self, exchange: str, key: str, properties: bytes, body: bytes, *, mandatory: bool) -> None:
-        """Send a message with the next turn. Raises ValueError if AMQP can't carry it, ChannelWrongStateError if the
-        channel is closed.
+        """Send a message with the next turn.
+
+        Raises ValueError if AMQP can't carry it, ChannelWrongStateError if the channel is closed.
         """
         if not self.channel.is_open:
             raise ChannelWrongStateError("the channel is closed")
         self._connection.send(self.channel.channel_number, exchange, key, properties, body, mandatory=mandatory)
 
     def confirm(self, has: Callable[[int, bool], None], lacks: Callable[[int, bool], None]) -> None:
-        """Request confirmations: `has` and `lacks` are called with a message's number, and True if it includes all
-        before.
+        """Request confirmations of messages, which the broker answers with `has` or `lacks`.
+
+        Both are called with a message's number, and True if the answer includes all messages before it.
         """
 
         def refused(frame: Any) -> None:
@@ -143,8 +146,9 @@ class PolledConnection:
             self.request(self.channel.basic_cancel, tag)
 
     def until(self, done: Callable[[], object]) -> None:
-        """Turn until `done` is true, at most for the broker's time to answer. Raises at once if the broker accepts
-        nothing.
+        """Turn until `done` is true.
+
+        Raises TimeoutError after BROKER_TIMEOUT, and ConnectionBlockedTimeout at once if the broker accepts nothing.
         """
         deadline = time.monotonic() + BROKER_TIMEOUT
         while not done():
@@ -175,8 +179,9 @@ class PolledConnection:
             raise self._error
 
     def lend(self, work: Callable[[], bool]) -> bool:
-        """From any thread: run `work` with the connection while its owner waits; return its result, False if it is in
-        use.
+        """Run `work` while the connection's owner waits; return its result, False if the owner does not wait.
+
+        Any thread may call this.
         """
         if not self._used.acquire(blocking=False):
             return False
@@ -187,32 +192,35 @@ class PolledConnection:
             self._used.release()
 
     def wake(self) -> None:
-        """From any thread: make `turn` return."""
+        """Make `turn` return. Any thread may call this."""
         self._woken.set()
         self._loop.add_callback(lambda: None)
 
     def later(self, work: Callable[[], None]) -> None:
-        """From any thread: let the owning thread run this in `work`, where it may send requests to the broker."""
+        """Let the owning thread run `work` between two turns; it may send requests to the broker.
+
+        Any thread may call this.
+        """
         self._works.append(work)
         self.wake()
 
     def work(self) -> None:
-        """Run what others passed to `later`, between two turns."""
+        """Run the functions passed to `later`, between two turns."""
         while self._works:
             self._works.popleft()()
 
     def call_later(self, seconds: float, work: Callable[[], None]) -> None:
-        """Run this within a turn after so many seconds; it must not send requests to the broker."""
+        """Run `work` within a turn after `seconds`; it must not send requests to the broker."""
         self._loop.call_later(seconds, work)
 
     def pause(self, seconds: float) -> None:
-        """Process events for so many seconds."""
+        """Process events for `seconds`."""
         rung: list[bool] = []
         self.call_later(seconds, lambda: rung.append(True))
         self.until(lambda: rung)
 
     def fail(self, error: BaseException) -> None:
-        """Within a callback: make the turn raise this error."""
+        """Make the turn raise this error. Only callbacks may call this."""
         self._error = error
 
     def close(self) -> None:

@@ -88,7 +88,10 @@ class BrokerProbe:
         return ""
 
     def served(self, key: str, route: Route) -> QueueStatus:
-        """Return the numbers of messages and consumers in the queue of a route whose messages must arrive."""
+        """Return the numbers of messages and consumers in the queue of a route whose messages must arrive.
+
+        Both are None if there is no such queue.
+        """
         try:
             with self._asking() as channel:
                 found = channel.queue_declare(queue_of(key, route).name, passive=True).method

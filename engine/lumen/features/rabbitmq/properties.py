@@ -44,7 +44,7 @@ class MessageProperties(NamedTuple):
     headers: str = ""
     """The text of `CAUSE_HEADER`."""
     offset: int = -1
-    """The position in a stream, -1 outside of one."""
+    """The position in a stream; -1 outside of one."""
     table: bytes = b""
     """All headers, undecoded: use `header_fields` to read more of them."""
     unreadable: tuple[str, ...] = ()
@@ -68,7 +68,7 @@ class TolerantConnection(pika.SelectConnection):  # type: ignore[misc]  # pika i
 
 
 def read_properties(data: bytes) -> MessageProperties:
-    """Return the properties in these bytes of a header frame; anything unreadable is named."""
+    """Return the properties in these bytes of a header frame; `unreadable` names those that can't be read."""
     found: dict[str, Any] = {}
     unreadable: list[str] = []
     try:
@@ -132,7 +132,10 @@ def _table(data: bytes, at: int) -> tuple[str | None, int]:
 
 
 def _cause(table: bytes) -> str:
-    """Return the text `cause` of a table if only texts come before it: each entry is a name, an `S` and a text."""
+    """Return the text `cause` of a table if only texts come before it, else an empty string.
+
+    Each entry is a name, an `S` and a text.
+    """
     at = 0
     while at < len(table):
         named = at + 1 + table[at]
@@ -146,8 +149,9 @@ def _cause(table: bytes) -> str:
 
 
 def _offset(table: bytes) -> int:
-    """Return the value of `OFFSET_HEADER` in a table, -1 if there is none: each entry is a name, a type letter and a
-    value.
+    """Return the value of `OFFSET_HEADER` in a table; -1 if it is missing.
+
+    Each entry is a name, a type letter and a value.
     """
     name = OFFSET_HEADER.encode()
     at = 0

@@ -37,7 +37,7 @@ CONFIRM_TIME = 0.01
 IDLE_TIME = 0.5
 """The time that the connection waits for events if there is nothing to send [s]."""
 MAX_WARNED_KEYS = 1_000
-"""The number of keys without a receiver that are warned of; further ones are not."""
+"""The number of keys without a receiver for which a warning is logged."""
 PROBE_PERIOD = 1.0
 """The time between two attempts to find out whether a key without a receiver has one now [s]."""
 PERSISTENT_DELIVERY = 2
@@ -52,7 +52,7 @@ class _Sent(NamedTuple):
     size: int
     """The size of its body [bytes]."""
     again: OutgoingMessage | None
-    """The message to send again if the connection is lost, None for none."""
+    """The message to send again if the connection is lost; None if it may be lost."""
 
 
 class Publisher(BrokerConnection):
@@ -102,8 +102,9 @@ class Publisher(BrokerConnection):
         return SIDE_QUEUES in self._declared
 
     def serve(self) -> bool:
-        """Send waiting messages and process the broker's; return False once everything is sent and the end is
-        requested.
+        """Send waiting messages and process the broker's.
+
+        Return False once everything is sent and the end is requested.
         """
         if self.connection.blocked:  # in the outbox a message's time to live counts; sent now, it would be used late
             self.connection.turn(IDLE_TIME)
@@ -194,7 +195,7 @@ class Publisher(BrokerConnection):
         self._bytes += len(message.body)
 
     def _confirmed(self, number: int, several: bool) -> None:
-        """Note that the broker has this message, and with `several` all before it."""
+        """Record that the broker has this message, and with `several` all before it."""
         self._settled(number, several)
 
     def _nacked(self, number: int, several: bool) -> None:
@@ -210,8 +211,9 @@ class Publisher(BrokerConnection):
         return messages
 
     def _returned(self, _: Any, method: Any, properties: Any, body: bytes) -> None:
-        """Handle a message without a receiver: one that must arrive goes to the side queue, where operators can find
-        it.
+        """Handle a message without a receiver.
+
+        One that must arrive goes to the side queue, so that operators can find it.
         """
         key = method.routing_key
         if method.exchange == UNROUTED:
@@ -239,7 +241,7 @@ class Publisher(BrokerConnection):
             self._missed[key] = time.monotonic()
 
     def unrouted(self, key: str) -> None:
-        """Note that a message under this key had no receiver; log it if no route has the key."""
+        """Record that a message under this key had no receiver; log it if no route has the key."""
         self._miss(key)
         if key not in self.known:
             self.warn_once(key)
@@ -254,8 +256,9 @@ class Publisher(BrokerConnection):
         _log.warning("no process receives messages on `%s`%s", key, hint if "mean" in hint else "")
 
     def _declare(self, name: str, work: Callable[[AskedChannel], None]) -> None:
-        """Declare something on the broker once; a refusal, as for a user with few permissions, is logged and
-        ignored.
+        """Declare something on the broker once.
+
+        A refusal, as for a user with few permissions, is logged and not tried again on this connection.
         """
         if name in self._declared or name in self._refused:
             return

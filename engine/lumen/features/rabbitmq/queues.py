@@ -39,8 +39,10 @@ HOUR = 60 * 60 * 1000
 UNUSED_EXPIRY = 10 * 60 * 1000
 """The time without a reader after which a queue of commands is deleted [ms]."""
 QUORUM_SETTLE_TIME = 1.0
-"""The time for which a new quorum queue stays unbound [s]. RabbitMQ saves which log belongs to the queue half
-a second later; if it is killed before, the queue's content is lost (docs/decisions).
+"""The time for which a new quorum queue stays unbound [s].
+
+RabbitMQ saves which log belongs to the queue half a second after the declaration; if it is killed before, the queue's
+content is lost (docs/decisions).
 """
 
 SIDE_EXCHANGE = "fanout"
@@ -107,8 +109,9 @@ def queue_of(key: str, route: Route | None, number: int = 0, exchange: str = EXC
 
 
 def journal_of(key: str) -> Queue:
-    """Return the stream of an outgoing journal, of at most a month and a gigabyte; each module reads on where it
-    ended.
+    """Return the stream of an outgoing journal, of at most a month and a gigabyte.
+
+    Each module continues to read after the last message that it has read.
     """
     arguments = {"x-queue-type": "stream", "x-max-age": "30D", "x-max-length-bytes": MAX_JOURNAL_BYTES}
     return Queue(key, _name(f"lumen.journal.{key}"), arguments=arguments)

@@ -36,7 +36,7 @@ class StreamReader(BrokerConnection):
         return [self._read.popleft() for _ in range(len(self._read))]
 
     def close(self, timeout: float = 5.0) -> None:
-        """End; entries that were not taken are read again by a reader that begins there."""
+        """End. Entries that were not taken are read again by a reader that begins at the first of them."""
         self.ending.set()
         self.join(timeout)
 
@@ -72,7 +72,10 @@ class StreamReader(BrokerConnection):
 
 
 def read_stream(url: str, name: str, first: int) -> StreamReader | None:
-    """Read a stream from the offset `first`; None if the broker has no such queue. Raises BusError."""
+    """Return a reader of a stream from the offset `first`; None if the broker has no such queue.
+
+    Raises BusError, with the remedy, if the broker is unusable.
+    """
     with closing(BrokerProbe(url)) as probe:
         if not probe.has_queue(name):
             return None

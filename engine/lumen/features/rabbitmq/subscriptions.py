@@ -29,7 +29,7 @@ class Subscription:
     tag: str = ""
     """The tag of its consumer on the broker."""
     refusal: str = ""
-    """The broker's reason for a refusal, empty without one."""
+    """The broker's reason for a refusal; empty without a refusal."""
     epoch: int = 0
     """The connection in which it was bound, counted from 1; 0 for none."""
     received: int = 0
@@ -37,7 +37,7 @@ class Subscription:
     taken: int = 0
     """The number of deliveries within the rate of the route."""
     handled: int = 0
-    """The number of those that have been handled."""
+    """The number of `taken` deliveries that have been handled."""
     dropped: int = 0
     """The number of deliveries that exceeded the rate."""
     bound: threading.Event = field(default_factory=threading.Event)
@@ -99,7 +99,7 @@ class Subscriptions:
         return subscription
 
     def claim(self, pattern: str, handler: MessageHandler) -> Subscription | None:
-        """Give the prepared subscription of this pattern its handler and return it; None if none is bound."""
+        """Give the prepared subscription of this pattern its handler and return it, else None."""
         with self._changing:
             subscription = self._prepared.pop(pattern, None)
             if subscription is None or not subscription.bound.is_set() or subscription.refusal:
@@ -109,8 +109,9 @@ class Subscriptions:
         return subscription
 
     def prepare(self, routes: Mapping[str, Route]) -> tuple[list[Subscription], list[Subscription]]:
-        """Prepare subscriptions for these keys; return them, and the earlier prepared ones that are no longer
-        needed.
+        """Prepare subscriptions for these keys.
+
+        Return all prepared ones, and those that were prepared before and are no longer needed.
         """
         with self._changing:
             taken = {s.pattern for s in self._active}

@@ -1,6 +1,4 @@
-"""The path of messages between a bus and its broker: a sending connection, a receiving one, and the handlers'
-thread.
-"""
+"""The path of messages between a bus and its broker: two connections, and the thread of the handlers."""
 
 import time
 import uuid
@@ -22,9 +20,7 @@ from lumen.upkeep.drops import DropLog
 from lumen.upkeep.ratelimit import RateLimiter
 
 ASIDE_RATE = 10.0
-"""The number of unusable messages per second that are put aside for each key: a flood leaves room for those of
-others.
-"""
+"""The rate at which unusable messages of a key are put aside [1/s]: a flood leaves room for those of others."""
 REPLY_LIFETIME = 30.0
 """The time that a reply waits for a broker that is away [s]."""
 
@@ -100,10 +96,10 @@ class Transport:
             self.answer(properties.reply_to, properties.correlation_id or "", f"message refused: {reason}")
 
     def _flush(self, deadline: float) -> None:
-        """Send a mark into each of our own queues, and wait until it arrives: then everything sent before it has
-        arrived.
+        """Send a mark into each of our own queues, and wait until all marks have arrived.
 
-        Queues that other processes may also read get no mark: messages in them are not lost.
+        Everything sent before them has arrived then. Queues that other processes may also read get no mark: messages in
+        them are not lost.
         """
         outbox = self.publisher.outbox
         if self.publisher.connection is None and not outbox:

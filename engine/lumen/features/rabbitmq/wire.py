@@ -20,7 +20,7 @@ READ_BYTES = 64 * 1024
 """The number of bytes that one system call reads, one per turn: pika would read until nothing is left."""
 
 MessageReader = Callable[[int, bool, bytes, MessageProperties, bytes], None]
-"""Called with a message's number on the channel, whether it may be a repetition, its key, properties and body."""
+"""A function that receives a message's number, whether it may be a repetition, its key, properties and body."""
 
 _HEAD = spec.FRAME_HEADER_SIZE
 _DELIVER, _ACK = (pack(">I", method.INDEX) for method in (spec.Basic.Deliver, spec.Basic.Ack))
@@ -85,7 +85,10 @@ class WireConnection(TolerantConnection):
             transport._MAX_RECV_BYTES, transport._MAX_CONSUME_BYTES = READ_BYTES, 1
 
     def _sent(self, data: bytes) -> int:
-        """Return how much of it could be sent at once [bytes]; pika handles the reason for any remainder."""
+        """Send as much of `data` as the system accepts at once; return its size [bytes].
+
+        pika sends the remainder, and handles the error that may have caused it.
+        """
         transport = self._transport
         if not self._plain or transport.get_write_buffer_size():
             return 0
