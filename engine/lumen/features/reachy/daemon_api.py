@@ -96,10 +96,10 @@ class DaemonApi:
         return call
 
     def request(self, method: str, path: str, body: Any = None, patience: float = PATIENCE) -> Any:
-        """Make a request on this thread and return the JSON data of the answer, for which it waits at most `patience`
-        [s].
+        """Make a request on this thread; return the JSON data of the answer, None if the answer is empty.
 
-        Raises RobotLostError if it can't be reached, RobotFailedError if it refuses.
+        It waits at most `patience` [s]. Raises RobotLostError if the daemon does not answer, RobotFailedError if it
+        refuses or answers something else than JSON.
         """
         content = None if body is None else json.dumps(body).encode()
         return self._request(method, path, content, {"Content-Type": "application/json"} if content else {}, patience)

@@ -1,6 +1,4 @@
-"""`lumen doctor --robot reachy`: checks that the robot's daemon can be used, and that no other program uses the
-robot.
-"""
+"""`lumen doctor --robot reachy`: checks the robot's daemon, and that no other program uses the robot."""
 
 from collections.abc import Iterator, Mapping
 

@@ -1,6 +1,4 @@
-"""Limits that apply to Reachy Mini's joints together: its body follows its head, and the head stays where its rods
-reach.
-"""
+"""Limits of Reachy Mini's joints together: the body follows the head, and the head stays in reach of its rods."""
 
 from collections.abc import Mapping
 from math import radians
@@ -14,8 +12,9 @@ FREE = radians(55)
 
 
 def possible(joints: Mapping[str, float], body: Body) -> dict[str, float]:
-    """Return positions near `joints` that the robot can take [rad, m]: within limits, body below head, in reach of the
-    rods.
+    """Return positions near `joints` that the robot can take [rad, m].
+
+    They are within limits, with the body below the head, and the head in reach of its rods.
     """
     found = {name: min(max(joints[name], body.joints[name].minimum), body.joints[name].maximum) for name in JOINTS}
     trunk, yaw = body.joints[BODY], found["head_yaw"]

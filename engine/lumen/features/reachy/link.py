@@ -24,31 +24,39 @@ SECOND_LOOK = 0.25
 """The time that Lumen waits for a message even if SILENCE is over [s], because this process may have been busy."""
 OPEN_PATIENCE = 5.0
 FIRST_RETRY_DELAY, MAX_RETRY_DELAY = 0.5, 5.0
-"""The times until the first try to connect again, and at most until the next [s]: each waits twice as long."""
+"""The first and the longest wait before a try to connect again [s]; each is twice as long as the last."""
 
 _log = logging.getLogger(__name__)
 
 
 class LinkChange(NamedTuple):
-    """`robot.lost` or `robot.back`, how long the robot was away by then [s], and why."""
+    """A change of the connection."""
 
     name: str
+    """`robot.lost` or `robot.back`."""
     seconds: float
+    """The time for which the robot was away by then [s]."""
     reason: str
+    """Why the robot is lost; empty if it is back."""
 
 
 class Measured(NamedTuple):
-    """All joints [rad, m] as the daemon measured them last, and when that was, on the clock of `time.monotonic` [s]."""
+    """The joints as the daemon measured them last."""
 
     joints: Mapping[str, float]
+    """The positions of all joints [rad, m]; empty before the first measurement."""
     at: float
+    """The time of the measurement on the clock of `time.monotonic` [s]."""
 
 
 NOTHING_MEASURED = Measured({}, 0.0)
 
 
 class ReachyLink:
-    """Keeps the WebSocket open; `take_over(again)` prepares the robot, on the thread that connects."""
+    """Keeps the WebSocket open; `take_over(again)` prepares the robot, on the thread that connects.
+
+    `again` is False for the first connection.
+    """
 
     def __init__(self, address: DaemonAddress, take_over: Callable[[bool], None]) -> None:
         self._address, self._take_over = address, take_over
@@ -87,7 +95,7 @@ class ReachyLink:
             self._target = None
 
     def changes(self) -> list[LinkChange]:
-        """Return what has changed since the last call."""
+        """Return the changes of the connection since the last call."""
         return [self._changes.popleft() for _ in range(len(self._changes))]
 
     def close(self) -> None:

@@ -11,9 +11,10 @@ SENT_TOLERANCE = 1e-5
 
 
 class Mover:
-    """`goal` is where commands want each joint [rad, m], `sent` the last target that went to the robot.
+    """The goals of Reachy Mini's joints.
 
-    While it is not `awake`, nothing is sent.
+    `goal` has the position that commands want of each joint, and `sent` the last target for the robot [rad, m]. Nothing
+    is sent unless the robot is `awake`.
     """
 
     def __init__(self, body: Body) -> None:

@@ -31,7 +31,7 @@ _log = logging.getLogger(__name__)
 class DaemonMoves:
     """The moves that the daemon runs, and the sounds that it located; a thread polls them.
 
-    `ours` are the moves that Lumen began.
+    `ours` are the moves that Lumen began. `app` is the name of the app that has the robot; it is empty if none has.
     """
 
     def __init__(self, api: DaemonApi) -> None:
@@ -90,7 +90,7 @@ class Strays:
         self.taken = False
 
     def sent(self, joints: Mapping[str, float], now: float) -> None:
-        """Note what Lumen sends at `now` [s]."""
+        """Record the target that Lumen sends at `now` [s]."""
         self._sent.append((now, joints))
         while len(self._sent) > 1 and self._sent[1][0] < now - LATELY:
             self._sent.popleft()
@@ -102,7 +102,7 @@ class Strays:
         self._still, self.taken = None, False
 
     def measured(self, joints: Mapping[str, float], now: float) -> None:
-        """Note a measurement at `now` [s]; `taken` is whether something else moves the head."""
+        """Process a measurement at `now` [s]; `taken` is then whether something else moves the head."""
         if self.taken:
             self._wait_for_stillness(joints, now)
         elif self._sent and all(_far(joints, sent, STRAY_ANGLE, STRAY_PLACE) for _, sent in self._sent):

@@ -38,8 +38,9 @@ def target_message(joints: Mapping[str, float]) -> dict[str, Any]:
 
 
 def head_joints(pose: Sequence[Sequence[float]]) -> dict[str, float]:
-    """Return the joints of the head [rad, m] in a pose, a 4 x 4 matrix. Raises ValueError or TypeError for other
-    data.
+    """Return the joints of the head [rad, m] in a pose, a 4 x 4 matrix.
+
+    Raises ValueError or TypeError for other data.
     """
     (r00, _, _, x), (r10, _, _, y), (r20, r21, r22, z), _ = (tuple(map(float, row)) for row in pose)
     roll, pitch, yaw = atan2(r21, r22), asin(min(max(-r20, -1.0), 1.0)), atan2(r10, r00)
@@ -47,7 +48,10 @@ def head_joints(pose: Sequence[Sequence[float]]) -> dict[str, float]:
 
 
 def motor_joints(message: Mapping[str, Any]) -> dict[str, float]:
-    """Return body and antennas [rad] of the daemon's `joint_positions`. Raises ValueError, TypeError or KeyError."""
+    """Return body and antennas [rad] of the daemon's `joint_positions`.
+
+    Raises ValueError, TypeError, KeyError or IndexError for other data.
+    """
     right, left = map(float, message["antennas_joint_positions"])
     return {BODY: float(message["head_joint_positions"][0]), LEFT: left, RIGHT: right}
 

@@ -17,12 +17,15 @@ SAMPLE_PERIOD = 0.05
 
 
 class Shortage(NamedTuple):
-    """A joint that stays short of its goal [rad, m], and when in the motion that is [s]."""
+    """A joint that stays short of its goal."""
 
     joint: str
     goal: float
+    """The position in the motion [rad, m]."""
     reached: float
+    """The position that the rods allow [rad, m]."""
     time: float = 0.0
+    """The time in the motion [s]."""
 
     @property
     def share(self) -> float:

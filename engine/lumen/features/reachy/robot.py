@@ -114,7 +114,7 @@ class ReachyRobot(ExecutingRobot):
         return Joints(self._clock() - age, names, angles, stiffness, life=self._life.offsets)
 
     def close(self) -> None:
-        """End what the robot does; it keeps its last target."""
+        """End all connections; the robot holds its last target."""
         self._runner.close()
         self._moves.close()
         self._link.close()
@@ -124,7 +124,7 @@ class ReachyRobot(ExecutingRobot):
         take_over(self._api, self.body)
 
     def _find_awake(self) -> None:
-        """Note whether the robot was woken before: then its motors are on, and its head does not lie."""
+        """Record whether the robot was woken before: then its motors are on, and its head does not lie."""
         joints = self._link.measured.joints
         mode = self._api.request("GET", "/api/motors/status").get("mode")
         self._mover.awake = mode == "enabled" and not lies(joints)
@@ -168,9 +168,7 @@ class ReachyRobot(ExecutingRobot):
                 self._events.append(Event(name, {"seconds": round(seconds, 3)}, now))
 
     def _woke_again(self, event: Event, now: float) -> bool:
-        """Return whether an event is the answer of the command that wakes the robot again; if it is, raise
-        `robot.back`.
-        """
+        """Return whether an event answers the command that wakes the robot again; if so, raise `robot.back`."""
         if not event.name.endswith(f".command.{WAKE_AGAIN}"):
             return False
         if event.name.startswith("error"):

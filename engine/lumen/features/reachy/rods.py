@@ -23,20 +23,20 @@ STEPS = 12
 
 
 class Motor(NamedTuple):
-    """A motor in the body's frame: its place [m], and the level direction of its arm at angle 0.
-
-    At a quarter turn the arm points up if `up` is 1, down if it is -1.
-
-    `joint` is where its rod holds the platform [m], in the platform's frame. `elbow` chooses which of two angles is
-    meant. `limits` are those of its angle [rad].
-    """
+    """A motor beneath the head, in the body's frame."""
 
     place: tuple[float, float, float]
+    """The place of the motor [m]."""
     along: tuple[float, float]
+    """The level direction of its arm at angle 0."""
     up: float
+    """1 if the arm points up at a quarter turn, -1 if it points down."""
     joint: tuple[float, float]
+    """Where its rod holds the platform [m], in the platform's frame."""
     elbow: float
+    """The choice of one of the two possible angles: 1 or -1."""
     limits: tuple[float, float]
+    """The least and the greatest angle [rad]."""
 
 
 C, S = cos(pi / 6), sin(pi / 6)

@@ -27,7 +27,7 @@ from lumen.robot.joint_ways import APPROACH_TIME, LOOK_SPEED, begun_from, home_a
 TOLERANCE, PLACE_TOLERANCE = radians(6), 0.006
 """A head that is nearer than this to its goal has arrived [rad], [m]; it sags by up to 4 degrees."""
 LYING_TOLERANCE, LYING_PLACE_TOLERANCE = radians(2.5), 0.003
-"""The same for a head that lies down [rad], [m]: it is let go there."""
+"""The tolerances of a head that lies down [rad], [m]: the robot lets go of it there."""
 GRACE = 1.5
 """The time that the head may take beyond its planned duration [s]."""
 LEAST_WAY = 0.4
@@ -60,7 +60,7 @@ class ReachySkills:
         """Return the command under way. Raises RobotError if the robot can't perform it."""
         match command:
             case Rest():
-                self._mover.awake = False  # whatever comes of it: nothing is sent any more
+                self._mover.awake = False  # even if the rest fails, nothing is sent any more
                 return StepActivity(self._rest())
             case Wake():
                 return StepActivity(self._wake())
@@ -99,8 +99,9 @@ class ReachySkills:
         yield from self._go(target, 1.0, way / LOOK_SPEED, "where it should look")
 
     def _go(self, target: Mapping[str, float], speed: float, least: float, where: str) -> Steps:
-        """Move the joints smoothly to `target`. Raises RobotFailedError if the rods, or an obstacle, keep the head from
-        it.
+        """Move the joints smoothly to `target` [rad, m].
+
+        Raises RobotFailedError if the rods, or an obstacle, keep the head from it.
         """
         goal, start = self._mover.goal, dict(self._mover.goal)
         way = {name: angle - start[name] for name, angle in target.items()}
@@ -160,8 +161,9 @@ class ReachySkills:
             now = yield None
 
     def _wake(self) -> Steps:
-        """Have the daemon wake the robot; no targets are sent before that is over. Raises RobotRefusedError if others
-        move it.
+        """Have the daemon wake the robot; send no targets before that is over.
+
+        Raises RobotRefusedError if another program's move has not ended after FOREIGN_PATIENCE.
         """
         self._mover.awake = False
         now = yield None
@@ -195,10 +197,10 @@ class ReachySkills:
     def _daemon_move(
         self, name: str, enough: Callable[[], bool] = lambda: False, *, stops_others: bool = False
     ) -> Steps:
-        """Have the daemon play a move until its end, or until `enough` is true; stop the move if no command waits for
-        it.
+        """Have the daemon play a move until its end, or until `enough` is true.
 
-        Moves that Lumen began earlier are stopped first, and with `stops_others` those of other programs, too.
+        The move is stopped if its command is cancelled. Moves that Lumen began earlier are stopped first, and with
+        `stops_others` those of other programs, too.
         """
         given_up = Event()
 

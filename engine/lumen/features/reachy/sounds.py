@@ -24,10 +24,12 @@ _log = logging.getLogger(__name__)
 
 
 class LoadedSound(NamedTuple):
-    """A sound that the daemon can play: its duration [s], and its `file` on the robot, empty for a silent one."""
+    """A sound that the daemon can play."""
 
     duration: float
+    """Its duration [s]."""
     file: str = ""
+    """Its file on the robot; empty for a silent sound."""
 
 
 class RobotSounds:
@@ -55,7 +57,10 @@ class RobotSounds:
         self._uploaded.clear()
 
     def speech(self, text: str, language: str) -> LoadedSound:
-        """Return a text as a sound; silent if it can't be synthesized, which is logged once. Raises RobotError."""
+        """Return a text as a sound; silent if it can't be synthesized, which is logged once.
+
+        Raises RobotError if the daemon does not accept it.
+        """
         silent = LoadedSound(speech_duration(text))
         if self._voice is None or not text.strip() or not self._media():
             return silent
@@ -74,7 +79,10 @@ class RobotSounds:
             return silent
 
     def sound(self, file: str, length: float) -> LoadedSound:
-        """Return a sound file of the project; silent if the robot plays none. Raises RobotError."""
+        """Return a sound file of the project; silent if the robot plays none.
+
+        Raises RobotError if the file can't be read, or the daemon does not accept it.
+        """
         if not self._media():
             return LoadedSound(length)
         try:

@@ -1,4 +1,4 @@
-"""An activity of Reachy Mini as steps, none of which waits: it hands over a call, or waits for the next tick."""
+"""An activity of Reachy Mini as steps that never block: each yields a call, or waits for the next tick."""
 
 from collections.abc import Callable, Generator
 from typing import Any
@@ -40,7 +40,7 @@ class StepActivity:
             self._stop()
 
     def _next(self) -> DaemonCall | None:
-        """Begin, or return the call in progress; None if the steps wait for the next tick."""
+        """Begin the steps, or return the call in progress; None if the steps wait for the next tick."""
         if self._begun:
             return self._call
         self._begun = True
