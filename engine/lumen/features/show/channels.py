@@ -17,8 +17,9 @@ _TERMINATED = 0x40
 
 
 def channel_level(value: Any, field: SchemaField) -> int:
-    """Return the level from 0 to 255 of a value in the field's range; True is 255. Raises ModuleError if it is not a
-    number.
+    """Return the level from 0 to 255 of a value in the field's range; True is 255, False is 0.
+
+    Raises ModuleError if it is neither a number nor a boolean.
     """
     if isinstance(value, bool):
         return FULL * value

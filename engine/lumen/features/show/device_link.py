@@ -4,8 +4,9 @@ from collections.abc import Callable, Collection
 from typing import Any, Protocol
 
 TakeFromDevice = Callable[[str, str, Callable[[], Any]], None]
-"""Receives a device's message: the route, its place on the device, and a function that returns the body or raises
-ModuleError.
+"""A function that receives a device's message.
+
+Its arguments are the route, the place on the device, and a function that returns the body or raises ModuleError.
 """
 
 

@@ -4,13 +4,17 @@ import time
 from collections.abc import Callable
 
 STEADY = 3.0
-"""The time that a device must be connected until it is reported as back [s]: so one that comes and goes is
-reported once.
+"""The time that a device must be connected until it is reported as back [s].
+
+A device that comes and goes is thus reported once.
 """
 
 
 class LinkHealth:
-    """Reports that `device` is gone, with the reason, and that it is back; `tell` repeats nothing until `well`."""
+    """Reports that `device` is gone, with the reason, and that it is back.
+
+    `tell` prints each line only once until `well` is called.
+    """
 
     def __init__(
         self,
@@ -29,7 +33,7 @@ class LinkHealth:
         self._tell(f"{self.device} {why}")
 
     def up(self) -> None:
-        """Note that the device is connected."""
+        """Record that the device is connected."""
         if self._up_since is None:
             self._up_since = self._clock()
 

@@ -16,7 +16,7 @@ from lumen.upkeep.drops import Drops
 from lumen.upkeep.threads import WatchedThread
 
 POLL = 0.5
-"""The time between two checks of a listener whether to end [s]."""
+"""The time between two checks whether a listener should end [s]."""
 RETRY = 5.0
 """The time between two attempts with a port that was taken, or a name that was unknown [s]."""
 MAX_DATAGRAM = 65_535
@@ -24,8 +24,7 @@ MAX_DATAGRAM = 65_535
 
 
 class OscDevice:
-    """Sends routes of `link` to the device, and passes its messages to `deliver`; `incoming` are the names of those
-    routes.
+    """Sends routes of `link` to the device, and passes its messages on the routes `incoming` to `deliver`.
 
     Messages from other senders are dropped and counted. An unknown name of the device, or a port that is taken, is
     reported and tried again.

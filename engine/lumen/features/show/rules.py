@@ -107,7 +107,7 @@ class _Ways:
                 yield name, self.draft.settings.routes[name]
 
     def may_come(self, route: Route, path: NodePath) -> bool:
-        """Return whether devices may send on the route, or it is an outgoing one; report it otherwise."""
+        """Return whether a route is outgoing, or open to messages of devices; report any other route."""
         if route.direction is Direction.OUT or may_come_from_devices(route):
             return True
         message = f"`{route.name}` has one of Lumen's own keys ({route.key}), on which devices may not send"
@@ -122,7 +122,7 @@ class _Ways:
             self.report(SHOW_ADDRESS, path, message, "give each route its own topic or address")
 
     def arguments(self, route: Route, fields: tuple[str, ...] | None, path: NodePath) -> None:
-        """Check each field that becomes an argument; those of the schema if none are named."""
+        """Check each field that becomes an argument: `fields`, or those of the schema if `fields` is None."""
         known, kinds = self.fields(route), (FieldKind.STRING, FieldKind.NUMBER, FieldKind.INTEGER, FieldKind.BOOLEAN)
         can = "an argument can be only a text, a number or a boolean"
         if fields is None and not known:

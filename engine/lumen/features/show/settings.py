@@ -18,17 +18,16 @@ class TopicMapping:
     field: str = ""
     """The field that is sent as plain text; empty for the whole body as JSON."""
     retain: bool = False
-    """Whether the broker keeps the newest message for later subscribers, and whether such a message is accepted from
-    it.
-    """
+    """Whether the broker keeps the newest message for later subscribers, and may send such a message to Lumen."""
 
 
 @dataclass(frozen=True, slots=True)
 class AddressMapping:
-    """A route as an OSC address, whose arguments are these `fields`; None for those of its schema, in that order."""
+    """A route as an OSC address."""
 
     address: str
     fields: tuple[str, ...] | None = None
+    """The fields that are its arguments; None for those of its schema, in that order."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +47,7 @@ class OscLink:
     host: str
     port: int
     listen: int | None = None
-    """The local port for the device's messages, None for none."""
+    """The local port for the device's messages; None to receive none."""
     routes: Mapping[str, AddressMapping] = field(default_factory=dict)
 
 
@@ -58,7 +57,7 @@ class DmxLink:
 
     universe: int
     host: str = ""
-    """The receiver's address, empty for multicast."""
+    """The receiver's address; empty for multicast."""
     routes: Mapping[str, Mapping[str, int]] = field(default_factory=dict)
     """The channel of each field, by route."""
 
@@ -82,7 +81,8 @@ SHOW_PATH: NodePath = ("modules", "show")
 
 
 def may_come_from_devices(route: Route) -> bool:
-    """Return whether devices may send on a route: only on incoming ones with a key outside of Lumen's own, so that no
-    device can command a robot.
+    """Return whether devices may send on a route: an incoming one whose key is not one of Lumen's own.
+
+    So no device can command a robot.
     """
     return route.direction is Direction.IN and route.key.split(".")[0] not in KEY_PREFIXES

@@ -152,8 +152,9 @@ class ShowControl(Module):
         return DmxUniverse(link, fields, f"Lumen {self.project.robot}", self._health(f"DMX universe {link.universe}"))
 
     def _foreign(self, link: MqttLink) -> Mapping[str, TopicMapping]:
-        """Return the routes except those that the bus's own broker carries as MQTT: their messages would return
-        forever.
+        """Return the routes except those that the bus's own broker carries as MQTT.
+
+        The messages of these would return for ever.
         """
         project, routes = self.project, dict(link.routes)
         broker = self.bus.ability(UsesBroker)

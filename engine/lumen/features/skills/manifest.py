@@ -37,16 +37,15 @@ ProgramKind = Literal["python", "command", "module"]
 
 @dataclass(frozen=True)
 class Skill:
-    """The part of a manifest that its performer needs.
-
-    `target` is the path of a Python file, a command with its arguments, or the name of a module. A `warm` program
-    starts with the exhibition. `memory` is what it may use [MB].
-    """
+    """The part of a manifest that its performer needs."""
 
     kind: ProgramKind
     target: tuple[str, ...]
+    """The path of a Python file, a command with its arguments, or the name of a module."""
     warm: bool = False
+    """Whether the program starts with the exhibition."""
     memory: float = DEFAULT_MEMORY
+    """The memory that the program may use [MB]."""
 
     @property
     def module(self) -> str:
@@ -55,7 +54,7 @@ class Skill:
 
 
 def build_skill(data: Any, report: DocumentReport, *, name: str, languages: Sequence[str] = ()) -> VerbRow | None:
-    """Return the row of the verb that the data of `skills/NAME.yaml` describe, None if it can't be used.
+    """Return the row of the verb that the data of `skills/NAME.yaml` describe; None if they have errors.
 
     Its description is that of the first of the project's `languages` in which there is one.
     """
@@ -112,7 +111,7 @@ def _performed(said: Any, data: Mapping[str, Any], report: DocumentReport) -> Sk
 
 
 def _schema(data: Mapping[str, Any], key: str, languages: Sequence[str], report: DocumentReport) -> Mapping[str, Any]:
-    """Return the JSON Schema under `in` or `out`; empty (and report it) if it can't be that of a verb."""
+    """Return the JSON Schema under `in` or `out`; empty, with a report, if it can't be that of a verb."""
     if not isinstance(schema := data.get(key), Mapping):
         return {}
     plain: dict[str, Any] = _with_texts(schema, languages)
@@ -169,7 +168,7 @@ _TYPES: Mapping[str, tuple[type, ...]] = {
 
 
 def _check_default(schema: Mapping[str, Any], where: NodePath, report: DocumentReport, *, fits: bool) -> None:
-    """Report a default that does not fit its schema; all of them fit if `fits`, except perhaps as durations."""
+    """Report a default that does not fit its schema; with `fits`, only its form as a duration is checked."""
     default = schema["default"]
     for fault in [] if fits else faults({"default": default}, {"properties": {"default": schema}})[:1]:
         report(SKILL_DEFAULT, where, f"this default does not fit: {fault.message}", fault.hint)

@@ -1,6 +1,4 @@
-"""The performer of skills: passes a call to a program, and the program's requests during the call to the robot and the
-bus.
-"""
+"""The performer of skills: passes a call to a program, and the program's requests to the robot and the bus."""
 
 from collections.abc import Callable, Mapping
 from math import inf
@@ -24,9 +22,9 @@ from lumen.run.sending import send
 LOOK = 0.25
 """The time between two checks of the memory that a program uses [s]."""
 MAX_TEXT = 1_000
-"""The most characters of a text that a program makes the robot say, and of its messages."""
+"""The greatest number of characters of a text that a program makes the robot say, and of its messages."""
 MAX_REQUESTS = 200
-"""The most texts and messages that a program may send during a call."""
+"""The greatest number of texts and messages that a program may send during a call."""
 
 
 def perform(call: SkillCall) -> Mapping[str, Any]:
@@ -68,8 +66,9 @@ class _Performance:
         return {}
 
     def _heard(self, message: Mapping[str, Any]) -> Mapping[str, Any] | None:
-        """Carry out a message of the program; return the result, None if the call continues. Raises
-        RobotFailedError.
+        """Carry out a message of the program; return the result, None if the call continues.
+
+        Raises RobotFailedError if the program reports an error, or is gone.
         """
         skill, tell = self._call.skill, self._workshop.tell
         match message:
@@ -95,8 +94,9 @@ class _Performance:
         return None
 
     def _request(self, request: Callable[[], str]) -> None:
-        """Pass a request on to the bus, and report one that can't be sent. Raises RobotFailedError beyond
-        `MAX_REQUESTS`.
+        """Pass a request on to the bus, and report one that can't be sent.
+
+        Raises RobotFailedError beyond `MAX_REQUESTS`.
         """
         self._sent += 1
         if self._sent > MAX_REQUESTS:

@@ -22,10 +22,10 @@ from lumen.upkeep.threads import WatchedThread
 GRACE = 0.5
 """The time that a program has to end a cancelled call, or to exit, before it is killed [s]."""
 MAX_OUTPUT_BYTES = 1 * MEGABYTE
-"""The greatest output of a program for one call, answers included."""
+"""The greatest output of a program for one call, answers included [bytes]."""
 MAX_UNREAD_MESSAGES = 1_000
 MAX_PRINTED_LINES = 40
-"""The most printed lines that are shown within `PRINT_PERIOD`; further ones are counted."""
+"""The number of printed lines that are shown within `PRINT_PERIOD`; further ones are counted."""
 PRINT_PERIOD = 1.0
 MAX_PRINTED_CHARACTERS = 300
 WRITE_PATIENCE = 1.0
@@ -94,7 +94,7 @@ class SkillProcess:
         return not self.ended
 
     def begin(self, skill: str, arguments: Mapping[str, Any], wake: Callable[[], None]) -> None:
-        """Have it perform a call; `wake` is called on another thread when messages of the call arrive."""
+        """Have the program perform a call; `wake` is called on another thread when its messages arrive."""
         with self._changed:
             self._call += 1
             self._messages.clear()
@@ -144,14 +144,14 @@ class SkillProcess:
 
     @property
     def fault(self) -> str:
-        """The reason to end it now, if it and its children use too much memory; else empty."""
+        """The reason to end the program now: it and its children use too much memory; else empty."""
         if self.ended:
             return ""
         used = sum(_pages(pid) for pid in _family(self._popen.pid)) * resource.getpagesize() / self._memory
         return f"it used {used:.1f} times the memory that it may" if used > 1.0 else ""
 
     def close(self) -> None:
-        """End it: by closing its input, and by force if it does not end within `GRACE`."""
+        """End the program: close its input, and kill it if it has not ended after `GRACE`."""
         with suppress(OSError, ValueError):
             self._stream(self._popen.stdin).close()
         with self._changed:
@@ -159,7 +159,7 @@ class SkillProcess:
         self.kill()
 
     def kill(self, reason: str = "") -> None:
-        """End it and all its children at once; `reason` becomes `ended`, unless it has ended before."""
+        """Kill the program and all its children; `reason` becomes `ended`, unless it has ended before."""
         with self._changed:
             self.ended = self.ended or reason or "it was ended"
         with self._killing:
@@ -172,7 +172,7 @@ class SkillProcess:
                 self._popen.wait(GRACE)
 
     def _read(self) -> None:
-        """Read what it prints until it has ended; while it prints nothing, this thread sleeps."""
+        """Read the program's output until it has ended; this thread sleeps while there is no output."""
         with closing(self._stream(self._popen.stdout)) as answers, closing(self._stream(self._popen.stderr)) as prints:
             # Prints come first: what a program printed before an answer is then shown before the answer has an effect.
             takers = {prints.fileno(): _Lines(self._print), answers.fileno(): _Lines(self._line)}
@@ -185,9 +185,7 @@ class SkillProcess:
         self._put({"ended": self.ended})
 
     def _take(self, takers: "dict[int, _Lines]", timeout: float | None = None) -> None:
-        """Wait for output, at most `timeout` [s], and pass it to its taker; a closed stream is removed from
-        `takers`.
-        """
+        """Wait for output, at most `timeout` [s], and pass it to its taker; remove closed streams from `takers`."""
         for stream in _ready(takers, select.POLLIN, timeout):
             content = os.read(stream, 65_536)
             self._output += len(content)

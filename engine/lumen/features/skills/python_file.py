@@ -21,7 +21,7 @@ class CodeFault(NamedTuple):
 
 
 def syntax_fault(content: bytes, file: str) -> CodeFault | None:
-    """Return why Python can't read a file; None if it can."""
+    """Return the fault that keeps Python from reading a file; None if it can be read."""
     read = _read(content, file)
     return read if isinstance(read, CodeFault) else None
 

@@ -24,9 +24,9 @@ from lumen.upkeep.ratelimit import Backoff
 from lumen.upkeep.threads import WatchedThread
 
 MAX_PROCESSES = 4
-"""The most calls of one skill that can be under way at the same time."""
+"""The greatest number of calls of one skill at the same time."""
 FIRST_PAUSE, LONGEST_PAUSE = 0.5, 30.0
-"""The pause before a program that crashed is started again, the first and the longest [s]."""
+"""The first and the longest pause before a program that crashed is started again [s]."""
 LOADING = 20.0
 """The time that the code of a skill may take to load [s]."""
 MAX_CODE_BYTES = 4_000_000
@@ -36,11 +36,14 @@ _ENGINE = str(Path(lumen.__file__).parents[1])
 
 
 class _Code(NamedTuple):
-    """The code of a program: when its files were changed, its hash, and for a Python file its text."""
+    """The code of a program."""
 
     stamp: tuple[tuple[str, int, int], ...]
+    """The path, time of change [ns] and size [bytes] of each file."""
     hash: str
+    """The SHA-256 hash of the files."""
     source: str = ""
+    """The text of a Python file; empty for other programs."""
 
 
 @dataclass
@@ -49,13 +52,18 @@ class _Bench:
 
     row: VerbRow
     code: _Code | None = None
-    """The code that calls use, once one has used it."""
+    """The code that calls use; None before the first call."""
     seen: _Code | None = None
+    """The code that was read before the first call."""
     refused: tuple[tuple[str, int, int], ...] = ()
+    """The stamp of code that Python can't read; empty without such code."""
     idle: list[SkillProcess] = field(default_factory=list)
+    """The processes that perform no call."""
     busy: list[SkillProcess] = field(default_factory=list)
+    """The processes that perform calls."""
     backoff: Backoff = field(default_factory=lambda: Backoff(FIRST_PAUSE, LONGEST_PAUSE))
     again: float = 0.0
+    """The earliest start of a program after a crash [s, monotonic]."""
 
     @property
     def skill(self) -> Skill:
@@ -87,7 +95,7 @@ class Workshop:
         self.use(project)
 
     def use(self, project: Project) -> None:
-        """Use the skills of this project from now on; a call of one that it lacks is ended."""
+        """Use the skills of this project from now on; calls of other skills are ended."""
         with self._lock:
             self.project = project
             gone = [self._benches.pop(name) for name in [*self._benches] if name not in project.verbs]
@@ -127,8 +135,9 @@ class Workshop:
 
     @property
     def hashes(self) -> dict[str, str]:
-        """The hash of each skill's code, as calls use it or the first call would; skills whose code was not read are
-        left out.
+        """The hash of each skill's code, as calls use it or the first call would.
+
+        Skills whose code was not read are left out.
         """
         with self._lock:
             found = {name: bench.code or bench.seen for name, bench in self._benches.items()}
@@ -188,7 +197,7 @@ class Workshop:
                 bench.again = time.monotonic() + bench.backoff.next()
 
     def worked(self, name: str) -> None:
-        """Note that a call was performed: the next pause is the shortest again."""
+        """Record that a call was performed: the next pause is the shortest again."""
         with self._lock:
             if bench := self._benches.get(name):
                 bench.backoff.reset()
@@ -216,8 +225,9 @@ class Workshop:
                 raise RobotRefusedError(f"`{call.skill}` was cancelled")
 
     def _refresh(self, name: str, bench: _Bench) -> None:
-        """Use the code as it is on the disk now, unless Python can't read it. Raises RobotFailedError if there is no
-        earlier code.
+        """Use the code as it is on the disk now, unless Python can't read it.
+
+        Raises RobotFailedError if Python can't read it and there is no earlier code.
         """
         skill = bench.skill
         stamp = _stamp(self._root, skill)
@@ -281,8 +291,9 @@ def _in_background(work: Callable[[], None]) -> None:
 
 
 def _files(root: Path, skill: Skill) -> list[Path]:
-    """Return the project's files in a program; those in the folder of a Python file count, because it may import
-    them.
+    """Return the project's files in a program.
+
+    Those in the folder of a Python file count, because it may import them.
     """
     if skill.kind == "python":
         own = root / skill.target[0]
