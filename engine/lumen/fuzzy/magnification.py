@@ -81,9 +81,7 @@ class Magnifier:
 
     @cached_property
     def _far_enough(self) -> dict[InputSide, float]:
-        """The distance of each input from its neutral point, on each side, beyond which
-        magnification has no benefit.
-        """
+        """The distance of each input from its neutral point, on either side, beyond which magnification is useless."""
         steepest: dict[InputSide, tuple[float, float, str]] = {}
         for output, name, xs, ys in Survey(self._controller).slices():
             for x, y in zip(xs, ys, strict=True):

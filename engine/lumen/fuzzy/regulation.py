@@ -123,8 +123,9 @@ class Regulator:
         return True
 
     def _crossed(self, signal: ThresholdBinding, value: float) -> bool:
-        """Return True if the output has passed the threshold, for the first time since it went
-        back by the hysteresis.
+        """Return True if the output has passed the threshold, for the first time since it fell below the hysteresis.
+
+        With a falling signal, both directions are reversed.
         """
         way = 1.0 if signal.rising else -1.0
         beyond = way * (value - signal.threshold)

@@ -88,9 +88,7 @@ class Survey:
 
 
 def silent(controller: ControllerDefinition, resolution: int) -> ControllerDefinition:
-    """Return the controller without defaults and previous values, with its sets sampled at
-    most at `resolution` points.
-    """
+    """Return the controller without defaults and previous values; its sets have at most `resolution` sample points."""
     outputs = {
         name: replace(v, default=nan, lock_previous=False, resolution=min(v.resolution, resolution))
         for name, v in controller.outputs.items()

@@ -28,15 +28,11 @@ class Emission(NamedTuple):
 
 
 Rescue = Callable[[Exception], Sequence[Command] | None]
-"""Called after a failure: switches to another bundle and returns the commands of the switch; None
-if it can't switch.
-"""
+"""Called after a failure: switches to another bundle; returns the commands of the switch, else None."""
 
 
 class InputRecorder(Protocol):
-    """A recorder of a behaviour's inputs: it is called before the commands of a step are performed,
-    and must not block.
-    """
+    """A recorder of a behaviour's inputs, called before the commands of a step are performed; it must not block."""
 
     def stepped(self, step: Step, how: How) -> None:
         """Record a step."""

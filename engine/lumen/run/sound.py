@@ -66,8 +66,9 @@ class Sound(NamedTuple):
 
 
 def sound_of(text: object) -> Sound:
-    """Return the sound of a WAV in base64. Raises ModuleError for any other text, and for an
-    unsupported kind of WAV.
+    """Return the sound of a WAV in base64.
+
+    Raises ModuleError for any other text, and for an unsupported kind of WAV.
     """
     if not isinstance(text, str):
         raise ModuleError("a sound must be a string: a WAV file encoded in base64")

@@ -32,8 +32,9 @@ _SENTENCE = re.compile(r"(?<=[.!?…])\s+")
 
 
 def rest_of(command: BodyCommand, elapsed: float) -> BodyCommand:
-    """Return the command to start again, `elapsed` [s] after it first started; a `say` restarts at the current
-    sentence.
+    """Return the command to start again, `elapsed` [s] after its first start.
+
+    A `say` restarts at the current sentence.
     """
     return replace(command, text=_remaining(command.text, elapsed)) if isinstance(command, Say) else command
 

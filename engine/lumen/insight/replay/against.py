@@ -210,9 +210,7 @@ class OtherPlay:
             self._pass(following)
 
     def _pass(self, until: float, *, one: bool = False) -> None:
-        """Process timers and answers up to a time [s], in order; with `one`, only one timer of those
-        due at that time.
-        """
+        """Process timers and answers up to a time [s], in order; with `one`, only one timer of those due then."""
         while self._answers and self._answers[0][0] <= until:
             at, id, data = heapq.heappop(self._answers)
             self._elapse(at)

@@ -42,8 +42,9 @@ def keep(root: Path, files: Mapping[str, bytes], packed: Delta) -> None:
 
 
 def _name(root: Path, files: Mapping[str, bytes]) -> str:
-    """Return the cache's name for everything on which the project depends; of unread models
-    only their listing counts.
+    """Return the cache's name for everything on which the project depends.
+
+    Of models that were not read, only the listing counts.
     """
     digest = hashlib.sha256(f"{fingerprint(files)} {chosen_robot(files)} {engine()} {sys.version}".encode())
     for path, what, _ in sorted(listed(root / MODELS)):

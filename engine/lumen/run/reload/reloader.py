@@ -178,8 +178,8 @@ class Reloader:
         )
 
     def write(self, change: Callable[[], Mapping[str, bytes]]) -> None:
-        """Let `change` write the running files to the project's folder; it returns the files
-        that are there afterwards.
+        """Let `change` write the running files to the project's folder; it returns the files that
+        the folder has then.
         """
         self._watcher.write(change)
 

@@ -25,9 +25,7 @@ class ReloadReport:
     verdict: str
     """`unchanged`, `staged`, `waiting`, `applied`, `refused`, `rolled back`, `dry run` or `status`."""
     who: str
-    """The origin: `files`, `command`, `trial`, `probation`, or `start` for a run with files other
-    than the last run's.
-    """
+    """The origin: `files`, `command`, `trial`, `probation`, or `start` for a run with other files than the last."""
     before: str = ""
     """The hash of the bundle before."""
     after: str = ""

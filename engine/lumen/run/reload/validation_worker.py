@@ -116,8 +116,9 @@ class ValidationWorker:
         return (None if parcel is None else self._receiver.unpack(parcel)), diagnostics
 
     def _request(self, *question: Any) -> Any:
-        """Return the process's answer to a question, or raise its error. Raises FatalFilesError if
-        it ends without one.
+        """Return the process's answer to a question, or raise its error.
+
+        Raises FatalFilesError if the process ends without an answer.
         """
         try:
             self._process.start()

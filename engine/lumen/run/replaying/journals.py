@@ -21,8 +21,9 @@ from lumen.run.snapshot_store import SnapshotStore
 
 
 class KeptBundles:
-    """The bundles stored in the home of the project in `root`, each read on first use; `robot` is
-    one of its `robots:`.
+    """The bundles stored in the home of the project in `root`, each read on first use.
+
+    `robot` is one of its `robots:`.
     """
 
     def __init__(self, root: Path, robot: str = "") -> None:
@@ -30,8 +31,9 @@ class KeptBundles:
         self._read: dict[str, Project | None] = {}
 
     def project(self, hash: str, behavior: str) -> Project | None:
-        """Return the project of a hash with that behaviour; None if it was not stored, or this
-        version can't read it.
+        """Return the project of a hash with that behaviour.
+
+        Return None if it was not stored, or this version can't read it.
         """
         if hash not in self._read:
             self._read[hash] = self.load(hash)

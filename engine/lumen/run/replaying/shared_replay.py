@@ -68,9 +68,7 @@ def shared_against(
     workers: Workers,
     tell: Callable[[int], None] = lambda _: None,
 ) -> ReplayReport:
-    """Return the same report as `against` for the kit's new files; `tell` is called with the
-    number of visits played.
-    """
+    """Return the report of `against` for the kit's new files; `tell` is called with the number of visits so far."""
     reports, report, played = dict[int, ReplayReport](), ReplayReport(), 0
     every = visits(with_machines(entries, bundles))
     tasks = iter(lambda: (tuple(islice(every, VISITS)),), ((),))
@@ -85,9 +83,7 @@ def shared_against(
 
 
 def take_again(kit: UnpackedKit, entries: tuple[RecordedEntry, ...], led: bool) -> list[TakenAgain]:
-    """Take the steps of a task again; if the task is `led`, its first entry only gives the snapshot,
-    and has no result.
-    """
+    """Take the steps of a task again; the first entry of a `led` task only gives the snapshot and has no result."""
     taken = [TakenAgain.of(row) for row in replay(entries, _KitBundles(kit).machine)]
     return taken[1:] if led else taken
 

@@ -132,9 +132,7 @@ def _action(event: Event, project: Project) -> VisitorAction:
 
 
 def _answers(visit: RecordedVisit) -> Iterator[TimedAction]:
-    """Yield the answers of the module `answers`, at their beginnings; those from passages are
-    found again without them.
-    """
+    """Yield the answers of the module `answers`, at their beginnings; those from passages are found again anyway."""
     began = dict[str, float]()
     said = dict[str, list[str]]()
     for entry in visit.inputs:
