@@ -160,18 +160,14 @@ class CodeBuilder:
                 return self.call(f"call_{function}", *first, *map(self.node, arguments))
 
     def logic(self, sign: str, operands: list[ast.expr]) -> ast.expr:
-        """Return the node of `&&` or `||`; in careful mode, an error of one operand does not keep the others from
-        deciding.
-        """
+        """Return the node of `&&` or `||`; in careful mode, the other operands may decide despite an error of one."""
         if not self.careful:
             return ast.BoolOp(ast.And() if sign == "&&" else ast.Or(), operands)
         nothing = ast.arguments([], [], None, [], [], None, [])
         return self.call("both" if sign == "&&" else "either", *(ast.Lambda(nothing, o) for o in operands))
 
     def has(self, target: ExpressionNode) -> ast.expr:
-        """Return the node of `has(a.b.c)`, which tests one key after another, without a call as long as the maps are
-        dicts.
-        """
+        """Return the node of `has(a.b.c)`: it tests the keys in turn, without a call as long as the maps are dicts."""
         keys: list[ast.expr] = []
         while isinstance(target, FieldAccess | IndexAccess):
             keys.append(ast.Constant(target.name) if isinstance(target, FieldAccess) else self.node(target.key))

@@ -41,7 +41,7 @@ class ExpressionFinding(NamedTuple):
 
     code: Code
     offset: int
-    """Its place in the source [characters], from 0."""
+    """The place of the fault in the source [characters], from 0."""
     length: int
     """The number of characters to mark."""
     message: str

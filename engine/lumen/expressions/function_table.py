@@ -24,7 +24,7 @@ class Function(NamedTuple):
     call: Callable[..., Any]
     """The implementation; it receives the Scope first if `scoped`, then the arguments."""
     scoped: bool = False
-    """Whether it gets the Scope before its arguments."""
+    """Whether the function receives the Scope before its arguments."""
 
 
 @cache

@@ -42,9 +42,9 @@ class Token(NamedTuple):
     kind: str
     """One of int, float, text, name, sign and end."""
     text: str
-    """Its source."""
+    """The source of the token."""
     offset: int
-    """Its offset in the source of the expression."""
+    """The offset of the token in the source of the expression [characters]."""
     value: int | float | str | None = None
     """The value of a literal, None for other kinds."""
 

@@ -155,10 +155,9 @@ class Evaluator:
 
 
 def _fallback(variable: Variable, inputs: Mapping[str, float], previous: Mapping[str, float] | None) -> float:
-    """Return the value of an output for which no rule fires, or none that fires has a value: the previous one or the
-    default.
+    """Return the value of an output without a result: no rule fires, or none that fires has a value.
 
-    Raises LumenError without a default.
+    It is the previous value or the default. Raises LumenError without a default.
     """
     if variable.lock_previous and previous and not isnan(previous.get(variable.name, float("nan"))):
         return previous[variable.name]

@@ -34,8 +34,9 @@ _ARITHMETIC: Mapping[str, Callable[[Any, Any], Any]] = {"+": add, "-": sub, "*":
 
 
 def formula(m: Arithmetic, text: str, names: Sequence[str]) -> Formula:
-    """Return the compiled formula; `names` is the order of the variables. Raises ExpressionError for an invalid
-    formula.
+    """Return the compiled formula; `names` is the order of the variables.
+
+    Raises ExpressionError for an invalid formula.
     """
     part = _Compiler(m, names).part(parse_expression(text))
     return _on_numbers(part) if m is NUMBERS else _on_arrays(part)

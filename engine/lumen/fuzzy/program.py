@@ -116,9 +116,7 @@ class InferenceProgram:
         return [self._part(whole, i) for i in range(len(slots))]
 
     def _part(self, whole: int, i: int) -> int:
-        """Return the slot of a rule's degree after activation; it is 0 for a rule that is not applied, which has NaN
-        before.
-        """
+        """Return the slot of a rule's degree after activation; a rule with NaN before is not applied and has 0."""
         m = self._m
         part = self._add(lambda tape: tape[whole][i])
         slot = self._add(lambda tape: m.where(tape[part] == tape[part], tape[part], 0.0))
@@ -130,8 +128,9 @@ class InferenceProgram:
         return slot if weight == 1.0 else self._add(lambda tape: weight * tape[slot])
 
     def _conclude(self, rule: Rule, slot: int, operators: Operators) -> int:
-        """Add a rule's conclusions; return its slot. A consequent's hedge also changes the degrees of later ones
-        (FuzzyLite).
+        """Add a rule's conclusions; return its slot.
+
+        A consequent's hedge also changes the degrees of later ones (FuzzyLite).
         """
         degree = slot
         for proposition in rule.consequents:

@@ -82,10 +82,10 @@ def _line(coefficients: tuple[float, ...], inputs: Sequence[Number]) -> Number:
 
 
 class Weighted:
-    """Defuzzifies by weighted average or sum; `which` is the index of the term that each of the degrees given later
-    weights.
+    """Defuzzifies by weighted average or sum.
 
-    The values given later are those of the variables `names`, of which the first `inputs` are the controller's inputs.
+    `which` has the index of the term of each degree that is given later. The values given later are those of the
+    variables `names`, of which the first `inputs` are the controller's inputs.
     """
 
     def __init__(
@@ -107,8 +107,9 @@ class Weighted:
         return float(self._crisp(NUMBERS, self._on_numbers, degrees, values))
 
     def crisp_batch(self, degrees: "Sequence[Array]", values: "Sequence[Array]") -> "Array":
-        """Return the outputs, Shape (n,), of degrees of Shape (n,) each; NaN if no term has a weight, or a formula has
-        no value.
+        """Return the outputs, Shape (n,), of degrees of Shape (n,) each.
+
+        An output is NaN if no term has a weight, or a formula has no value.
         """
         self._on_arrays = self._on_arrays or [value(arrays(), term, self._names, self._inputs) for term in self._terms]
         return self._crisp(arrays(), self._on_arrays, degrees, values)  # type: ignore[no-any-return]

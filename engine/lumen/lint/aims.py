@@ -16,8 +16,9 @@ WRONG_SIGN = Code("wrong-sign", "controllers", WARNING, "the robot turns away fr
 
 
 MAX_GAIN = 2.0
-"""The largest gain that is not reported. With a delay of 100 to 200 ms, a loop of gain 1.5 does not overshoot, and one
-of 3 does by 46 %.
+"""The largest gain that is not reported.
+
+With a delay of 100 to 200 ms, a loop of gain 1.5 does not overshoot, and one of 3 does by 46 %.
 """
 
 OPPOSITE = {"left": "right", "right": "left", "up": "down", "down": "up", "forward": "backward", "backward": "forward"}
@@ -56,8 +57,9 @@ def _sense(controller: ControllerDefinition, output: Variable, report: DocumentR
 
 
 def _trend(controller: ControllerDefinition, variable: Variable, output: Variable) -> int:
-    """Return how `output` changes as `variable` rises, by the rules that relate their terms: 1 rises, -1 falls, 0
-    unknown.
+    """Return how `output` changes as `variable` rises, by the rules that relate their terms.
+
+    1 means that it rises, -1 that it falls, and 0 that this is unknown.
     """
     asked, said = ranks(tuple(variable.terms)), ranks(tuple(output.terms))
     pairs = [

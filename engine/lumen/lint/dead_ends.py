@@ -29,8 +29,9 @@ A region that waits for one is a watching region; events that it raises are alar
 
 
 GraphNode = tuple[str, str]
-"""A node of the graph: a relation and the path of a state. `in` is being in it, `to` entering it, `any` being in any
-state below it.
+"""A node of the graph: a relation and the path of a state.
+
+`in` is being in the state, `to` entering it, and `any` being in any state below it.
 """
 
 _RESTLESS = (ENDLESS_ALWAYS, ALWAYS_LOOP, ENDLESS_CHAIN)
@@ -279,9 +280,7 @@ class _Ways:
         )
 
     def late(self, state: State, transition: Transition) -> bool:
-        """Return whether a transition is the `at` of an outer state, and so may be hours away from a later state within
-        it.
-        """
+        """Return whether a transition is the `at` of an outer state, which may be hours away from an inner state."""
         within_others = state.parent is not None and state.path not in self.machine.states[state.parent].initial
         return transition.schedule is not None and transition.source != state.path and within_others
 

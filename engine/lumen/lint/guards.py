@@ -155,9 +155,7 @@ def covers(earlier: Transition, later: Transition) -> bool:
 
 
 def _takes_all(earlier: Transition, later: Transition, machine: MachineDefinition, report: DocumentReport) -> bool:
-    """Report a transition that an earlier one makes wholly or partly unreachable; return whether nothing is left for
-    it.
-    """
+    """Report a transition that an earlier one makes partly or wholly unreachable; return whether wholly."""
     related = [(earlier.where, "the earlier one is here")]
     if earlier.guard is None:
         if report.broken(earlier.where):  # the part that could not be read may have been its guard

@@ -98,9 +98,7 @@ def _alternatives(node: ExpressionNode, value: bool) -> list[Alternative] | None
 
 
 def _compared(left: ExpressionNode, sign: str, right: ExpressionNode) -> list[Alternative] | None:
-    """Return the alternative in which a comparison holds, in a list; the list is empty for literals that don't compare
-    so.
-    """
+    """Return a list with the alternative in which a comparison holds; empty if it compares literals and is false."""
     if isinstance(left, Literal) and isinstance(right, Literal):
         claim = Claim("", sign, right.value)
         return [frozenset()] if _holds(left.value, claim) else []

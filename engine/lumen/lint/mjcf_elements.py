@@ -27,11 +27,11 @@ class ModelElement(NamedTuple):
     name: str
     """The name of the tag."""
     attributes: Mapping[str, str]
-    """Its attributes."""
+    """The attributes of the element."""
     line: int
-    """Its line, from 1."""
+    """The line of the tag, from 1."""
     column: int
-    """Its column, from 1."""
+    """The column of the tag, from 1."""
     depth: int = 0
     """The number of elements around it; 0 for the outermost element."""
 

@@ -119,8 +119,9 @@ def _bad(phrase: WrittenPhrase, error: PatternError) -> None:
 
 
 def _torn(phrase: WrittenPhrase) -> NodePath | None:
-    """Return the path of the phrase that opens a bracket which a later one closes, if this phrase is among them; else
-    None.
+    """Return the path of the phrase that opens a bracket across several phrases.
+
+    It is this phrase or an earlier one, and this or a later one closes the bracket; None without such phrases.
     """
     *around, place = phrase.path
     if not isinstance(place, int):

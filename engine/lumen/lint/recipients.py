@@ -24,8 +24,9 @@ def check(draft: ProjectDraft) -> None:
 
 
 def recipients(draft: ProjectDraft, name: str, send: Send) -> list[MachineDefinition]:
-    """Return the behaviours that receive an event that the behaviour `name` sends; those that were not read are left
-    out.
+    """Return the behaviours that receive an event sent by the behaviour `name`.
+
+    Behaviours that were not read are left out.
     """
     if send.to == PARENT:
         return [machine for machine in draft.behaviors.values() if name in set(_invoked(machine).values())]

@@ -21,9 +21,7 @@ WRONG_DIRECTION = Code("wrong-direction", "routes", WARNING, "a route is used in
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report unknown names in lumen.yaml and in the behaviours' actions, and publishing on a route for incoming
-    messages.
-    """
+    """Report unknown names in lumen.yaml and in the behaviours' actions, and publishing on incoming routes."""
     references = References(draft)
     _main(draft, references)
     for name, machine in draft.behaviors.items():

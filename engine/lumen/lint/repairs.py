@@ -60,8 +60,9 @@ def repaired(
 def _steps(
     found: Sequence[Diagnostic], files: ProjectFiles, wanted: Callable[[Diagnostic], bool]
 ) -> list[list[Repair]]:
-    """Return the repairs to try, the last first: the likeliest fix of every finding together, then the other fixes
-    singly.
+    """Return the repairs to try, the last first.
+
+    They are the likeliest fix of every finding together, then each of the other fixes alone.
     """
     proposals = [(d, fixes(d, files)) for d in found if wanted(d)]
     others = [[Repair(d, fix)] for d, proposed in proposals for fix in proposed[1:]]

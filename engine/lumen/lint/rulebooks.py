@@ -144,9 +144,7 @@ def _order(block: RuleBlock, controller: ControllerDefinition, first: Rule, seco
 
 
 def _clash(first: Rule, second: Rule) -> tuple[Proposition, Proposition] | None:
-    """Return two consequents that conclude different terms of one variable, both without hedges; None if there are
-    none.
-    """
+    """Return two consequents without hedges that conclude different terms of one variable; None without such a pair."""
     for one, other in product(first.consequents, second.consequents):
         if one.variable == other.variable and one.term != other.term and not one.hedges and not other.hedges:
             return one, other

@@ -105,8 +105,9 @@ def _signal(
 def _field(
     draft: ProjectDraft, report: DocumentReport, variable: Variable | None, binding: InputBinding | MessageBinding
 ) -> Mapping[str, Any] | None:
-    """Return the schema of the bound field; None if it is unknown. Report a field that is no number or has another
-    unit.
+    """Return the schema of the bound field; None if it is unknown.
+
+    Report a field that is no number or has another unit.
     """
     path = first(report, (*binding.where, "message"), binding.where)
     found = field_schema(draft, report, path, binding.route, binding.path)

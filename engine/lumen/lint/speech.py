@@ -38,16 +38,14 @@ UNREACHABLE_LANGUAGE = Code(
 
 
 MIN_TEXTS_FOR_LANGUAGE = 4
-"""The number of texts from which a language without any is reported as a whole; with fewer texts, each of them is
-reported.
-"""
+"""The number of texts from which a language without texts is reported once, rather than for each text."""
 
 MAX_COMPARED_ROWS = 200
 """The number of rows of an answers table that are compared with one another."""
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report missing and empty texts, languages that lumen.yaml does not name, and languages without texts."""
+    """Report texts that are missing in a language or empty, and languages that are unknown or unused."""
     if draft.settings is None or draft.main is None or not draft.settings.languages:
         return
     if any(path[:1] == ("languages",) for path in draft.main.pruned):
@@ -224,9 +222,7 @@ class _Speech:
                 draft.main(UNREACHABLE_LANGUAGE, path, message, hint)
 
     def texts(self, report: DocumentReport, path: NodePath, texts: Mapping[str, Any]) -> None:
-        """Report a text that is given by language and lacks one of the languages, is empty in one, or has an unknown
-        one.
-        """
+        """Report a text by language that lacks one of the languages, is empty in one, or has an unknown one."""
         self.each(report, path, texts)
         self.empty(report, path)
         said = {language for language in texts if not _is_rest(report, (*path, language))} | _written(report, path)

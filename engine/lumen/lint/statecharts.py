@@ -99,9 +99,7 @@ def _endless(machine: MachineDefinition, report: DocumentReport) -> None:
 
 
 def _at_once(machine: MachineDefinition, path: str) -> tuple[Transition, str] | None:
-    """Return the `always` that leaves an atomic state on entry, and the path of the atomic state that follows; else
-    None.
-    """
+    """Return the `always` that leaves an atomic state on entry, and the path of the next atomic state; else None."""
     state = machine.states[path]
     always = next((t for t in state.transitions if not t.event), None)
     if state.kind is not StateKind.ATOMIC or always is None or always.guard or len(always.targets) != 1:

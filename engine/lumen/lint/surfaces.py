@@ -23,9 +23,7 @@ SURFACE_STEP = Code("surface-step", "controllers", WARNING, "an output jumps whi
 
 
 STEP_SHARE, TURN_SHARE, REST_SHARE = 0.1, 0.02, 0.02
-"""Shares of an output's range: the least step and the least reversal to report, and the greatest value that counts as
-0.
-"""
+"""Shares of an output's range: the least step and reversal to report, and the greatest value that counts as 0."""
 
 MIN_RANGE_SHARE = 0.2
 """The share of the declared range that an output should use at least."""
@@ -103,8 +101,9 @@ def _all(
 
 
 def _off(controller: ControllerDefinition, slices: list[Slice]) -> dict[str, float]:
-    """Return for each output with an `accuracy` the greatest error, compared with RESOLUTION_FACTOR times the
-    resolution.
+    """Return the greatest error of each output with an `accuracy`.
+
+    It is the difference to the value with RESOLUTION_FACTOR times the resolution.
     """
     exact = {
         n: v for n, v in controller.outputs.items() if v.accuracy is not None and v.defuzzifier in INTEGRAL_DEFUZZIFIERS

@@ -43,7 +43,7 @@ class ExpressionSite(NamedTuple):
     transition: Transition | None
     """The transition that it belongs to; None for any other part of a state."""
     guard: bool = False
-    """Whether it is a condition."""
+    """Whether the expression is a condition."""
     key: str = ""
     """The context key to which `assign` assigns its value; empty for other expressions."""
     expected: Mapping[str, Any] | None = None
@@ -87,9 +87,7 @@ def _expressions(machine: MachineDefinition) -> Iterator[ExpressionSite]:
 
 
 def _made(where: NodePath) -> bool:
-    """Return whether an element was generated from a `for`: it has the path of the `for`, and is not in the file
-    itself.
-    """
+    """Return whether an element was generated from a `for`: it has the path of the `for` and is not in the file."""
     return where[-1:] == ("for",)
 
 

@@ -71,9 +71,9 @@ class CommandRow(Generic[C]):
 
     command: type[C]
     verb: str
-    """Its name in the YAML, or in motions and modules."""
+    """The verb of the command in the YAML, or in motions and modules."""
     rank: int
-    """Its rank: of the commands that wait, those of the lowest rank begin first."""
+    """The rank of the command: of those that wait, those of the lowest rank begin first."""
     kind: str
     """The `type` of its body on the bus, spelt as in 2015 if the command existed then."""
     method: str
@@ -91,7 +91,7 @@ class CommandRow(Generic[C]):
     check: Callable[[C, Body], None] = lambda _command, _body: None
     """Raises BadCommandError for a command that no robot of that body can perform."""
     moves: bool = True
-    """Whether it is refused while a person keeps the robot still."""
+    """Whether the command is refused while a person keeps the robot still."""
 
 
 def owns(*parts: str) -> Callable[[object, Body], frozenset[str]]:

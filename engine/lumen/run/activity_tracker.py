@@ -32,9 +32,9 @@ class UnderWay(NamedTuple):
     name: str
     """The text, or the name of the motion or posture."""
     since: float
-    """When it began [s]."""
+    """When the activity began [s]."""
     seconds: float | None = None
-    """Its duration [s], None if unknown."""
+    """The duration of the activity [s]; None if unknown."""
     language: str = ""
     """The language of a text."""
 
@@ -70,8 +70,9 @@ class ActivityTracker(Observer):
 
     @property
     def saying(self) -> UnderWay | None:
-        """The text that is said now, else None. If its end is not reported, it counts for its expected duration at
-        most.
+        """The text that is said now, else None.
+
+        If its end is not reported, it counts for its expected duration at most.
         """
         for id, said in tuple(self._speaking.items()):
             if said.seconds is None or self._now() - said.since < said.seconds:
@@ -90,9 +91,7 @@ class ActivityTracker(Observer):
         return len(self._speaking) + len(self._moving) + len(self._others)
 
     def look(self) -> None:
-        """Read the texts from the bus, and update the active states if a reload changed them; call this before each
-        tick.
-        """
+        """Read the texts from the bus, and update the active states after a reload; call this before each tick."""
         while self.told:
             self._hear(self.told.popleft())
         now = self._snapshot()

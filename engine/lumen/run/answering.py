@@ -55,8 +55,9 @@ def moment_of(text: str) -> float:
 
 
 def _until(steps: Sequence[RecordedStep], at: str) -> float:
-    """Return an ISO 8601 time on the exhibition's clock [s]. Raises TooLongAgoError if it is before the first step in
-    memory.
+    """Return an ISO 8601 time on the exhibition's clock [s].
+
+    Raises TooLongAgoError if it is before the first step in memory.
     """
     moment = moment_of(at)
     if not steps:

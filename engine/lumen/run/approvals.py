@@ -37,12 +37,12 @@ class HeldEvent(NamedTuple):
     """An event that waits for GO."""
 
     id: str
-    """Its id, such as `a1`."""
+    """The id of the waiting event, such as `a1`."""
     event: Event
     marked: MarkedTransition
     """The transition that it would trigger."""
     since: float
-    """When it began to wait [s]."""
+    """When the event began to wait [s]."""
 
     @property
     def until(self) -> float:

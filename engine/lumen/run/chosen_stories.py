@@ -21,9 +21,7 @@ T = TypeVar("T")
 
 
 def project_of(words: Iterable[str]) -> str | None:
-    """Return the project of the first file among these words in a folder of `behaviors/`; None if there is no such
-    file.
-    """
+    """Return the folder of the project of the first story file among these words; None without such a file."""
     for word in words:
         file = Path(os.path.abspath(word))
         if _is_file(word) and len(file.parents) > 2 and (file.parents[2] / MAIN_FILE).is_file():

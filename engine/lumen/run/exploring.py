@@ -30,7 +30,7 @@ class ExploredFinding:
 
     kind: str
     place: Place
-    """Its file, line and column."""
+    """The file, line and column of the finding."""
     message: str
     story: str
     """The YAML of a story that leads to it."""
@@ -55,7 +55,7 @@ class Explored:
     took: float
     """The duration [s]."""
     known: bool = False
-    """Whether it is the stored result of an earlier exploration."""
+    """Whether this is the stored result of an earlier exploration."""
 
     @property
     def complete(self) -> bool:

@@ -123,8 +123,9 @@ class Rescuer(Protocol):
     """A handler of faults that may switch to another bundle."""
 
     def rescue(self, error: Exception) -> Sequence[Command] | None:
-        """Switch to another bundle and return the commands of the switch; if all rescuers return None, the fault ends
-        the run.
+        """Switch to another bundle; return the commands of the switch.
+
+        Return None without a rescue. If all rescuers do so, the fault ends the run.
         """
         ...
 
@@ -222,8 +223,9 @@ class BehaviorLoop:
         return ""
 
     def tick(self, now: float | None = None) -> float:
-        """Run one tick at `now` [s]; if it is None, wait until one period after the last tick. Return the tick's time
-        [s].
+        """Run one tick at `now` [s]; return the tick's time [s].
+
+        If `now` is None, wait until one period after the last tick.
         """
         if now is None:
             self.clock.wait(self._last + TICK_PERIOD)
@@ -399,9 +401,7 @@ class BehaviorLoop:
                 self.rests = False
 
     def _recover(self, error: Exception, now: float) -> None:
-        """Let a rescuer switch the bundle after a fault, and perform its commands; raise the fault if none of them
-        does.
-        """
+        """Let a rescuer switch the bundle after a fault, and perform its commands; if none does, raise the fault."""
         commands = self._rescued(error)
         if commands is None:
             raise error

@@ -76,7 +76,7 @@ class Module:
 
     @property
     def settings(self) -> ModuleSettings:
-        """Its settings in `lumen.yaml`."""
+        """The module's settings in `lumen.yaml`."""
         return self.project.modules.get(self.name, ModuleSettings())
 
     def begin(self) -> None:

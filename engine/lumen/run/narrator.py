@@ -50,7 +50,7 @@ class Narrator(Observer):
     """
 
     explains = False
-    """Whether it also reports events that changed nothing, and why."""
+    """Whether the narrator also reports events that changed nothing, and why."""
 
     def __init__(self, now: Callable[[], float], machine: Callable[[], MachineDefinition]) -> None:
         self._now, self._machine = now, machine
@@ -144,8 +144,9 @@ class Narrator(Observer):
             self.line("robot", f"notices {event.name}" + (f": {details}" if details else ""))
 
     def troubled(self, trouble: RunTrouble) -> None:
-        """Keep a trouble for the end of the run; only a missed joint goal needs a line here, because others already had
-        one.
+        """Keep a trouble for the end of the run.
+
+        Only a missed joint goal needs a line here, because other troubles already had one.
         """
         if trouble.kind == "joint":
             self.line("trouble", trouble.what)

@@ -31,7 +31,7 @@ class _Way:
     id: str
     name: str
     since: float
-    """When its last walk ended, or it became the first in the queue [s]."""
+    """When the last of its walks ended, or it became the first in the queue [s]."""
     target: HallPlace | None = None
     """The place as its walks are planned; None before the first walk and after the place was moved."""
     leg: str = ""
@@ -41,7 +41,7 @@ class _Way:
     left: int = 0
     """The number of walks that may still follow."""
     cancelled: bool = False
-    """Whether it was cancelled, and ends with its current walk."""
+    """Whether the walk to the place was cancelled, and ends with the current walk."""
     seen: float | None = None
     """The time of the last reading [s]; None before any."""
     fresh: int = 0

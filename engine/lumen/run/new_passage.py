@@ -72,8 +72,9 @@ def _names(question: str) -> list[str]:
 
 
 def create_file(file: Path, text: str) -> bool:
-    """Write a new file; return False if it exists. If writing fails, no part of the file is left, and OSError is
-    raised.
+    """Write a new file; return False if it exists.
+
+    If writing fails, no part of the file is left, and OSError is raised.
     """
     try:
         held = os.open(file, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o644)

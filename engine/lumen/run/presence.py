@@ -57,13 +57,13 @@ class Peer:
     """Another process."""
 
     session: str
-    """Its id, new at each start."""
+    """The id of the process, new at each start."""
     parts: tuple[str, ...]
     """The parts that it has."""
     since: float
-    """When it was first noticed [s, monotonic]."""
+    """When the process was first noticed [s, monotonic]."""
     heard: float
-    """When its last sign of life arrived [s, monotonic]."""
+    """When the last sign of life arrived [s, monotonic]."""
     state: str
     """`asks`, `here` or `leaves`."""
     said: Mapping[str, Any]

@@ -62,8 +62,9 @@ class Questions:
         self._bus, self._today, self._offers = bus, today, offers
         self.visit, self._home = 0, ""
         self.silenced = ""
-        """The person who silenced the module, else empty; while it is set, no questions are sent, and answers are
-        ignored.
+        """The person who silenced the module, else empty.
+
+        While it is set, no questions are sent, and answers are ignored.
         """
         self._fillers: Mapping[str, str] = {}
         self._patience = FILLER_AFTER
@@ -92,10 +93,10 @@ class Questions:
         self.visit += bool(self._home) and self._home in step.entered
 
     def ask(self, project: Project, id: str, asked: Ask, now: float, origin: MessageOrigin) -> list[Event]:
-        """Search for an answer to the question with an id; return the events that are known at once: the answer, or an
-        error.
+        """Search for an answer to the question with an id; return the events that are known at once.
 
-        Without either, the question is sent to the module, and its answer comes from `drain`.
+        These are the answer, or an error. Without either, the question is sent to the module, and its answer comes from
+        `drain`.
         """
         retriever = self._passages(project, asked.language)
         if found := retriever.answer(asked.question, self._weights):
@@ -136,9 +137,7 @@ class Questions:
         return not self._received and not any(one.filler_at < inf for one in self._open.values())
 
     def drain(self, now: float) -> list[Event]:
-        """Return answers and fillers to open questions, each answer with its message as the cause; drop all other
-        answers.
-        """
+        """Return answers and fillers to open questions, each answer caused by its message; drop all other answers."""
         events = []
         while self._received:
             message, at = self._received.popleft()

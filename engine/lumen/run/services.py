@@ -53,8 +53,9 @@ class Services:
             time_passes=NodeTime(plan.speed if plan.roles else None, plan.leaps, self._pace),
         )
         self.left_out: list[str] = []
-        """The parts of packages that could not be made, each with its package; other parts are notified when they
-        begin.
+        """The parts of packages that could not be made, each with its package.
+
+        Other parts are notified of them when they begin.
         """
         self._provided: list[object] = []
         self._places: dict[Part, int] = {}

@@ -27,7 +27,7 @@ class StoredSnapshot(NamedTuple):
     behavior: str
     """The name of the behaviour."""
     time: float
-    """When it was written [s since 1970]."""
+    """When the snapshot was written [s since 1970]."""
     frozen: Mapping[str, Any]
     """The serialised snapshot."""
     tracking: tuple[str, ...] = ()
@@ -116,9 +116,7 @@ class SnapshotStore:
             return None
 
     def of_another_version(self) -> tuple[str, bool]:
-        """Return the version of a snapshot by another version of Lumen, else an empty string; and whether the robot
-        rests.
-        """
+        """Return the version of a snapshot of another version of Lumen, else empty; and whether the robot rests."""
         data = self._home.read_json(SNAPSHOT_FILE)
         said = data.get("version", SNAPSHOT_VERSION) if isinstance(data, Mapping) else SNAPSHOT_VERSION
         return ("", False) if said == SNAPSHOT_VERSION else (str(said)[:20], data.get("rests") is True)

@@ -18,7 +18,7 @@ class LastReload(NamedTuple):
     """The last result of a reload."""
 
     at: datetime
-    """When it was reported (UTC)."""
+    """When the result was reported (UTC)."""
     verdict: str
     """A verdict of `ReloadReport`."""
     bundle: str

@@ -168,9 +168,7 @@ class StoryPlayer(Observer):
         self.see(active_names(step.snapshot), entered_names(step), step.snapshot.context, step.snapshot.place)
 
     def see(self, states: frozenset[str], entered: Iterable[str], context: Mapping[str, Any], place: str = "") -> None:
-        """Store the active states, the context and the robot's place; fail if a forbidden state is active or was
-        entered.
-        """
+        """Store the active states, the context and the place; fail if a forbidden state is active or was entered."""
         self._witness.states, self._witness.context, self._witness.place = states, dict(context), place
         if bad := states.union(entered).intersection(self.story.never):
             self.fail(UnmetExpectation(f"never state {listed(bad)}", "it was entered"))

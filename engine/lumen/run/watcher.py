@@ -192,9 +192,7 @@ class FileWatcher(Generic[T]):
         return self._hint.is_set()
 
     def _settled(self, saved: SavedFiles) -> tuple[T | None, SavedFiles]:
-        """Return the files once they have not changed for long enough; also their result, if
-        they were checked already.
-        """
+        """Return the files once they have not changed for long enough, with their result if they were checked."""
         since, judged = time.monotonic(), self._judged_at_once(saved)
         while not self._stop.is_set():
             self._hint.clear()

@@ -50,7 +50,7 @@ class StateNode:
     def __init__(self, state: State | None, index: int, parent: "StateNode | None") -> None:
         self.state = state
         self.index = index
-        """Its position in document order; -1 for the document."""
+        """The position of the state in document order; -1 for the document."""
         self.parent = parent
         self.path = state.path if state else ""
         self.name = state.name if state else ""

@@ -17,9 +17,7 @@ class CommandAnswer(NamedTuple):
     """The robot's answer to a command."""
 
     kind: str
-    """`done`, `error`, `cancelled`, `lost` (forgotten by the robot) or `answer` (all or part of the answer to a
-    question).
-    """
+    """`done`, `error`, `cancelled`, `lost` (the robot has forgotten it) or `answer` (a part of an answer, or all)."""
     id: str
     reason: str
     """Why the command did not succeed; else the kind."""
@@ -47,9 +45,7 @@ def outer_id(id: str, owner: str) -> str:
 
 
 def inner_id(id: str) -> tuple[str, str]:
-    """Return an id as used by its own behaviour, and the id of the invoke; the latter is empty for the outermost
-    machine.
-    """
+    """Return an id as used by its own behaviour, and the id of the invoke; empty for the outermost machine."""
     own, separator, owner = id.rpartition("@")
     return (own, owner) if separator else (id, "")
 

@@ -46,11 +46,10 @@ class FastPaths:
         return play(snapshot, event)
 
     def _found(self, snapshot: Snapshot, event: Event) -> WrittenStep:
-        """Return the function for an event that is not among the paths: an answer, or a new combination of event and
-        states.
+        """Return the function for an event that is not among the paths.
 
-        Events that change the robot's place or context keys are left to the full algorithm, because they change more
-        than states.
+        It is an answer, or a new combination of event and states. Events that change the robot's place or context keys
+        are left to the full algorithm, because they change more than states.
         """
         name, names = event.name, snapshot.configuration
         if ".command." in name:
@@ -78,9 +77,7 @@ class FastPaths:
         return StepWriter(self.planner, start, apart).heard(candidates)
 
     def _answered(self, snapshot: Snapshot, name: str) -> WrittenStep:
-        """Return the function for an answer to a command; only `done` has one, which resumes the `do` that awaits the
-        answer.
-        """
+        """Return the function for an answer to a command; only `done` has one, which resumes the awaiting `do`."""
         kind, _, id = name.partition(".command.")
         if kind != "done" or not (id[:1] in ("c", "d") and id[1:].isdecimal()):
             return whole
@@ -112,7 +109,7 @@ class FastPaths:
 
 
 def noted(cache: dict[Any, WrittenStep], key: Any, write: Callable[[], WrittenStep | None]) -> WrittenStep:
-    """Note a first occurrence and return `whole`; on the second, `write` generates the function."""
+    """Record the first occurrence of a key and return `whole`; at the second, `write` generates the function."""
 
     def again(snapshot: Snapshot, event: Event) -> Step | None:
         cache[key] = play = write() or whole

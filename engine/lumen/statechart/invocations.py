@@ -94,8 +94,7 @@ class Invocations:
             self._finish(context, id, child.snapshot.output)
 
     def deliver(self, context: ExecutionContext, id: str, event: Event | None) -> None:
-        """Deliver an event to the behaviour of that id, or start it if the event is None, and merge the step that
-        follows.
+        """Deliver an event to the behaviour of that id, or start it if the event is None; merge the step that follows.
 
         If the behaviour fails, it ends and `error.invoke.ID` is raised.
         """

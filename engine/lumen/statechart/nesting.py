@@ -64,8 +64,9 @@ def behavior_of(machine: MachineDefinition, id: str, step: Step) -> str:
 
 
 def resolutions(machine: MachineDefinition, name: str) -> Iterator[tuple[MachineDefinition, str]]:
-    """Yield each machine in which a name may occur, and the name there: `quiz/ask` is `ask` in the behaviour invoked as
-    `quiz`.
+    """Yield each machine in which a name may occur, and the name there.
+
+    `quiz/ask` is `ask` in the behaviour invoked as `quiz`.
     """
     invokes = {(invoke.id, invoke.behavior) for state in machine.states.values() for invoke in state.invoke}
     for id, behavior in sorted(invokes):

@@ -46,7 +46,7 @@ class MicrostepPlan(NamedTuple):
     taken: tuple[CompiledTransition, ...]
     """The transitions that it takes, compiled."""
     transitions: tuple[Transition, ...]
-    """The same transitions as in the definition."""
+    """The definitions of these transitions."""
     exits: tuple[StateChange, ...]
     """The states to exit, in exit order; idle states, which have nothing to execute, are omitted."""
     between: frozenset[str]
@@ -70,7 +70,7 @@ class Configuration:
         self.nodes = nodes
         self.ordered = entry_order(nodes)
         self.finished = bool(nodes) and in_final(self.ordered[0], nodes)
-        """Whether it ends the machine; then it has no candidates."""
+        """Whether the configuration ends the machine; then it has no candidates."""
         self.names = frozenset(node.name for node in nodes if node.path)
         """The names that a Snapshot holds."""
         self.known = names_of(nodes)

@@ -87,9 +87,7 @@ class ActionText(StepText):
         raise NotImplementedError
 
     def either(self, condition: str, known: Certain, *ops: Op) -> None:
-        """Write everything that follows if a condition is true; the text after it is for the case that the condition is
-        false.
-        """
+        """Write all that follows if a condition is true; the text after it is for the case that it is false."""
         with self.branch(condition):
             other = copy(known)
             other.first(*ops)
@@ -161,10 +159,9 @@ class ActionText(StepText):
         return self.constant(action)
 
     def begin(self, action: Action, node: StateNode, known: Certain) -> str:
-        """Write the start of an action of a `do` (`Advance.begin`); return the text of its position, `None` if it has
-        ended.
+        """Write the start of an action of a `do` (`Advance.begin`).
 
-        Raises NotPlainError if the action is not supported.
+        Return the text of its position, `None` if it has ended. Raises NotPlainError if the action is not supported.
         """
         sight = Sight(known.event, node, known.configuration.known)
         match action:

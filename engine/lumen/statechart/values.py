@@ -16,9 +16,9 @@ class Timer(NamedTuple):
     """An event that will happen; times are integers [ns] on the clock of the snapshot, so that sums are exact."""
 
     id: str
-    """Its id: that of the `send` or `wait`; for `after` and `at` the name of the event."""
+    """The id of the `send` or `wait`; for `after` and `at` the name of the event."""
     due_ns: int
-    """When it happens [ns]."""
+    """When the event happens [ns]."""
     delay_ns: int
     """The time between its start and `due_ns` [ns]."""
     event: str
@@ -46,7 +46,7 @@ class Awaiting(NamedTuple):
     id: str
     """The id of the command or timer."""
     at: float = 0.0
-    """When it began [s]."""
+    """When the wait began [s]."""
 
 
 class Within(NamedTuple):

@@ -37,9 +37,9 @@ class Change:
     sentence: str
     """The change in words."""
     risk: Risk
-    """Its reach in a running exhibition."""
+    """The reach of the change in a running exhibition."""
     file: str = ""
-    """Its file, relative to the project."""
+    """The file of the change, relative to the project."""
     where: NodePath = field(default=(), compare=False)
     """The path of the node in that file; empty if unknown."""
     was: str = field(default="", compare=False)

@@ -44,8 +44,9 @@ class _Comparison:
         yield from self.named("event", self.old.events, self.new.events)
 
     def presence(self) -> Iterator[Change]:
-        """Yield the states that were removed, added, renamed or moved; of nested removed or added states only the
-        outermost.
+        """Yield the states that were removed, added, renamed or moved.
+
+        Of nested removed or added states only the outermost are included.
         """
         known = set(self.images.values())
         gone = {path: None for path, image in self.images.items() if image is None}

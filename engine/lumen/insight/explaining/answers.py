@@ -27,7 +27,7 @@ class WhyAnswer:
     what: str
     """The effect in words."""
     at: float
-    """When it happened [s since 1970, in UTC]."""
+    """The time of the effect [s since 1970, in UTC]."""
     links: tuple[Link, ...]
     """The chain of causes: the effect first, its cause last."""
     needs: tuple[Link, ...] = ()

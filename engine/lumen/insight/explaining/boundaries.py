@@ -28,8 +28,7 @@ FIRST = 6
 
 
 def boundaries(machine: MachineDefinition, sources: Iterable[str], scope: Scope) -> dict[ValuePath, list[Any]]:
-    """Return for each path of the context and of the event's data that guards read, other values that may change a
-    guard.
+    """Return other values that may change a guard, for each path of the context and the event's data that guards read.
 
     The values nearest to the present one come first.
     """

@@ -15,11 +15,11 @@ class GuardPart(NamedTuple):
     text: str
     """The condition as it is written."""
     holds: bool
-    """Whether it is true. A condition that has no value counts as false (SCXML 5.9.1)."""
+    """Whether the condition is true. A condition that has no value counts as false (SCXML 5.9.1)."""
     values: Mapping[str, Any]
     """The values that it read, by their names in the condition."""
     error: str = ""
-    """Why it has no value; empty if it has one."""
+    """Why the condition has no value; empty if it has one."""
 
 
 def parts(guard: Expression, scope: Scope) -> tuple[GuardPart, ...]:

@@ -27,10 +27,10 @@ def needed(history: StepHistory, number: int) -> tuple[int, ...]:
 
 
 def directly_needed(history: StepHistory, number: int) -> Iterator[int]:
-    """Yield the steps that set what a step depended on: its active states, the context that it read, its timer or
-    command.
+    """Yield the steps that set what a step depended on.
 
-    Yields 0 for anything that the first step set; a number may occur several times.
+    These are its active states, the context that it read, and its timer or command. Yields 0 for anything that the
+    first step set; a number may occur several times.
     """
     one = history.steps[number]
     before, event = one.before, one.step.event

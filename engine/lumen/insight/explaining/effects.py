@@ -28,7 +28,7 @@ class Link:
     text: str
     """The event, command or other occurrence, in words."""
     at: float
-    """When it happened [s since 1970, in UTC]."""
+    """The time of the occurrence [s since 1970, in UTC]."""
     place: Place | None = None
     """The place in the files that defines it; None if no file does."""
     id: str = ""
@@ -92,9 +92,7 @@ def _effects(history: StepHistory, what: str) -> Iterator[Effect]:
 
 
 def is_meant(command: Command, what: str) -> bool:
-    """Return whether `what` means a command: its id, part of its text, or a name in it; an empty `what` means any
-    command.
-    """
+    """Return whether `what` means a command: its id, part of its text, or a name in it; empty means any command."""
     match command:
         case Start(id, wanted):
             if not what or what == id:

@@ -23,7 +23,7 @@ class HeardRow(NamedTuple):
     row: Hears
     """The row."""
     fate: RowFate
-    """Why it is taken or not."""
+    """Why the row is taken or not."""
     words: str = ""
     """The words of its phrase as they were said; empty if nothing was found."""
     clause: str = ""

@@ -24,7 +24,7 @@ class GuardTruth(NamedTuple):
     text: str
     """The guard as written."""
     holds: bool | None
-    """Its result; None if that depends on the event."""
+    """The result of the guard; None if it depends on the event."""
     values: Mapping[str, Any]
     """The values that it reads, by their names in it."""
 
@@ -41,11 +41,11 @@ class WayOut(NamedTuple):
     open: bool
     """False if it can't be taken now, whatever event comes."""
     guard: GuardTruth | None
-    """Its guard at this moment; None if it has none."""
+    """The transition's guard at this moment; None without a guard."""
     why: str
     """The condition that prevents the transition or that it waits for, in words."""
     due: float | None = None
-    """When its timer ends, on the exhibition's clock [s]; None if it has none."""
+    """When the transition's timer ends, on the exhibition's clock [s]; None without a timer."""
 
 
 class Running(NamedTuple):
@@ -54,9 +54,9 @@ class Running(NamedTuple):
     owner: str
     """The ids under which it runs; empty for the outermost."""
     machine: MachineDefinition
-    """Its machine."""
+    """The behaviour's machine."""
     snapshot: Snapshot
-    """Its snapshot."""
+    """The behaviour's snapshot."""
     prefix: str = ""
     """The prefix of its states' names: `quiz/`."""
     host: str = ""
@@ -161,9 +161,7 @@ class _Asked:
         )
 
     def _guard(self, transition: CompiledTransition) -> tuple[GuardTruth | None, str]:
-        """Return the truth of a transition's guard, and why it is false for any event; the text is empty if it may be
-        true.
-        """
+        """Return the truth of a transition's guard, and why it is false for any event; empty if it may be true."""
         found = self._known.get(transition)
         if found is None:
             found = self._known[transition] = self._looked_at(transition)

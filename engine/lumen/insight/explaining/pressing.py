@@ -28,11 +28,11 @@ class ShownButton(NamedTuple):
     state: str
     """The outside name of its state."""
     key: str
-    """Its key; empty if another button that is shown has the same one."""
+    """The button's key; empty if another button that is shown has the same one."""
     enabled: bool
     """Whether its event would be taken now."""
     reason: str
-    """Why it would not be taken; empty if it would."""
+    """Why the event would not be taken; empty if it would."""
 
 
 def shown_buttons(machine: MachineDefinition, snapshot: Snapshot, at: float) -> list[ShownButton]:

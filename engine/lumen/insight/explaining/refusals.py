@@ -131,9 +131,7 @@ class TransitionRefusals:
         return Reason("preempted", f"{after}, {who}", at, place, None, change, note, number)
 
     def _rival(self, number: int, moment: Moment, found: CompiledTransition) -> Transition | None:
-        """Return the transition that was taken instead: one of the same candidates, else any one; None if none was
-        taken.
-        """
+        """Return the transition that was taken instead, if possible one of the same candidates; else None."""
         taken_then = [t for s in self.history.trace(number).microsteps if s.moment is moment for t in s.transitions]
         group = next((group for group in moment.groups if found in group), ())
         own = [t.definition for t in group]

@@ -73,9 +73,7 @@ def _guard(row: ExplainedRow) -> str:
 
 
 def _same(caught: Any, wanted: Any) -> bool:
-    """Return whether a slot caught the expected value; one phrase of a list's entry, or one of several answers,
-    suffices.
-    """
+    """Return whether a slot caught the expected value; one phrase of an entry, or one of several answers, suffices."""
     if isinstance(caught, Mapping) and isinstance(wanted, str):
         return any(folded(wanted) == folded(one) for texts in phrases_in(caught).values() for one in texts)
     return bool(caught == wanted or (isinstance(caught, list | tuple) and wanted in caught))

@@ -27,17 +27,17 @@ class FoundPhrase(NamedTuple):
     name: str
     """The name of the phrase as the row's key has it."""
     said: str
-    """Its words as they were said."""
+    """The words of the phrase as they were said."""
     words: int
     """The number of words that count."""
     alone: bool | None
-    """Whether it is a whole clause; None if it need not be a whole clause."""
+    """Whether the phrase is a whole clause; None if it need not be one."""
     negated: bool
-    """Whether it is negated."""
+    """Whether the phrase is negated."""
     asked: bool
-    """Whether it is part of a question."""
+    """Whether the phrase is part of a question."""
     dropped: Dropped
-    """Why it does not count for its row, regardless of the guard; empty if it counts."""
+    """Why the phrase does not count for its row, regardless of the guard; empty if it counts."""
 
     @property
     def counts(self) -> bool:

@@ -70,7 +70,7 @@ class Stimulus(NamedTuple):
 
     @property
     def cost(self) -> int:
-        """Its cost on the path to a story."""
+        """The stimulus's cost on the path to a story."""
         return STIMULUS_COSTS[self.kind] + OVERTAKING_COST * (bool(self.pending) + self.overtaking)
 
 

@@ -140,9 +140,7 @@ def _delays(node: StateNode) -> dict[str, int | Template]:
 
 
 def _afters(node: StateNode, image: StateNode) -> list[tuple[str, int | Template, bool]]:
-    """Return the events and delays of a new state's `after`, and whether the old state had that delay; those come
-    first.
-    """
+    """Return the events and delays of a new state's `after`, and whether each delay is an old one; those come first."""
     before = list(_delays(node).values())
     found = []
     for event, delay in _delays(image).items():
@@ -153,9 +151,7 @@ def _afters(node: StateNode, image: StateNode) -> list[tuple[str, int | Template
 
 
 def history(old: History, new: Chart, identity: Identity) -> dict[str, tuple[str, ...]]:
-    """Return the content of each history state that still exists: its states, or the nearest surviving ones around
-    them.
-    """
+    """Return the content of each history state that still exists: its states, or the nearest surviving ones."""
     found = {}
     for path, remembered in old.items():
         name = identity.state(path)
@@ -166,9 +162,7 @@ def history(old: History, new: Chart, identity: Identity) -> dict[str, tuple[str
 
 
 def _recalled(history: StateNode, remembered: tuple[str, ...], new: Chart, identity: Identity) -> list[StateNode]:
-    """Return the states that a history restores in the new chart, as if they were entered; empty if they exclude each
-    other.
-    """
+    """Return the states that a history restores in the new chart, as if entered; empty if they exclude each other."""
     home = history.parent
     assert home is not None  # only the document has no parent
     assert history.state is not None  # only a state can be a history

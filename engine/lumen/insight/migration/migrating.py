@@ -83,9 +83,7 @@ class _Migration:
         )
 
     def _left(self) -> ExecutionContext:
-        """In the old machine, leave the states that do not stay and end what can't continue; return the machine's
-        context.
-        """
+        """Leave the old machine's states that do not stay, and end what can't continue; return its context."""
         situation, snapshot = self.situation, self.situation.snapshot
         invocations = Invocations(snapshot.invoked)
         context = ExecutionContext.of(self.old, snapshot, None, snapshot.at, invocations)

@@ -121,8 +121,9 @@ class _Placing:
         return None if found and found.kind is StateKind.HISTORY else found
 
     def _keep(self, leaf: StateNode) -> None:
-        """Keep a leaf and those of its ancestors that still surround it; if the leaf is gone, those around its nearest
-        ancestor that stays.
+        """Keep a leaf and those of its ancestors that still surround it.
+
+        If the leaf is gone, keep those around its nearest ancestor that stays.
         """
         chain = [node for node in (leaf, *leaf.ancestors) if node in self.images]
         anchor = next(image for node in chain if (image := self.images[node]) is not None)
@@ -142,8 +143,9 @@ class _Placing:
         return found.union(*(node.ancestors for node in found))
 
     def unplaced(self) -> StateNode | None:
-        """Return the outermost compound state that has no single active child and can't enter its initial state; else
-        None.
+        """Return a compound state that lacks a single active child and can't enter its initial state; else None.
+
+        Of several it is the outermost.
         """
         standing = self.standing()
         begins = {self.kept[leaf] for leaf in _leaves(self.active) if leaf in self.kept} | set(self.goals)
@@ -154,9 +156,7 @@ class _Placing:
         return None
 
     def lead(self, empty: StateNode, history: History) -> bool:
-        """Follow the nearest `onReload` around a state, and drop the states in its domain; return False if there is
-        none.
-        """
+        """Follow the nearest `onReload` around a state, and drop the states in its domain; return False without one."""
         source = next((n for n in (empty, *empty.ancestors) if n.state and n.state.on_reload), None)
         if source is None or source.state is None:
             return False

@@ -117,16 +117,12 @@ class Situation:
         )
 
     def busy(self) -> MigrationDelay | None:
-        """Return a delay for the first removed state whose `do` is under way, because the `do` may lead to another
-        state.
-        """
+        """Return a delay for the first removed state whose `do` is under way: the `do` may lead to another state."""
         gone = [node for node in self.start.ordered if node.path and self.identity.state(node.path) is None]
         return next((_gone(node) for node in gone if node.path in self.snapshot.doing), None)
 
     def delays(self, placement: Placement) -> Iterator[MigrationDelay]:
-        """Yield a delay for each `do` and invoked behaviour that is under way and can't continue, in the order of the
-        old file.
-        """
+        """Yield a delay for each `do` and invoked behaviour under way that can't continue, in the old file's order."""
         doing = self.snapshot.doing
         changed = self.changed(placement)
         for node in self.start.ordered:

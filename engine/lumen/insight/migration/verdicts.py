@@ -9,7 +9,7 @@ from lumen.statechart import Snapshot
 
 
 class MigrationPlan(NamedTuple):
-    """How a behaviour continues under the new files.
+    """The continuation of a behaviour under the new files.
 
     Perform `leaving` under the old bundle, then `entering` under the new one.
     """
@@ -36,23 +36,20 @@ class MigrationPlan(NamedTuple):
 
 
 class MigrationDelay(NamedTuple):
-    """The behaviour can't change yet: the `do` of a state, or an invoked behaviour, is under way and was changed or
-    removed.
+    """A delay: the `do` of a state, or an invoked behaviour, is under way and was changed or removed.
 
     Try again after the next step, or with `now`, which cancels what is under way.
     """
 
     reason: str
-    """The reason in words."""
     what: str
-    """The name of the state, or the id of the invoked behaviour."""
 
 
 class Refusal(NamedTuple):
     """The behaviour can't continue under the new files."""
 
     reason: str
-    """Why it can't."""
+    """Why the behaviour can't continue."""
     hint: str = ""
     """A hint on how to fix it."""
     state: str = ""

@@ -155,9 +155,7 @@ class OtherPlay:
         return self._stands is not None and self.home in self._stands.configuration
 
     def attend(self, old: Project, home: JournalJump, visit: RecordedVisit, hurry: Callable[[], None]) -> None:
-        """Change to these files at the moment when the behaviour was at home, and play the visit; set `trouble` on an
-        error.
-        """
+        """Change to these files when the behaviour was at home, and play the visit; set `trouble` on an error."""
         self._began, self._hurry = home.at, hurry
         self._most = MORE_STEPS + MOST_TIMES * len(visit.inputs)
         try:

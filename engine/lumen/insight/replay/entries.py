@@ -38,7 +38,7 @@ class JournalInput(NamedTuple):
     position: int
     """Its position in the journal."""
     how: How
-    """How the event came."""
+    """How the event reached the behaviour."""
     event: Event
     """The event."""
     exited: tuple[str, ...] = ()

@@ -23,15 +23,15 @@ class RecordedVisit(NamedTuple):
     """A visit."""
 
     number: int
-    """Its number in the journal, from 1."""
+    """The visit's number in the journal, from 1."""
     first: int
     """The position of its first entry."""
     last: int
     """The position of its last entry."""
     began: float
-    """When it began [s since 1970, in UTC]."""
+    """The time of its beginning [s since 1970, in UTC]."""
     ended: float
-    """When it ended [s since 1970, in UTC]."""
+    """The time of its end [s since 1970, in UTC]."""
     home: JournalJump | None = None
     """The jump before the visit, with the behaviour at home; None if the journal lacks it.
 

@@ -42,9 +42,7 @@ class Example(NamedTuple):
     mark: MarkedWord | None = None
     """The word that lint marks; None in a right example."""
     note: str = ""
-    """A special case: `latin-1` is the encoding, `folder` replaces the file by a folder; with `installed` the file is a
-    module of another installed package, with an entry point for its `FEATURE`.
-    """
+    """A special case: `latin-1` (the encoding), `folder` (instead of a file) or `installed` (in another package)."""
 
 
 class Page(NamedTuple):
@@ -59,7 +57,7 @@ class Page(NamedTuple):
     wrong: tuple[Example, ...]
     """The files of the wrong example."""
     right: tuple[Example, ...]
-    """The same files, corrected."""
+    """The files of the wrong example, corrected."""
 
 
 @cache

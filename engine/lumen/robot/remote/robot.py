@@ -57,15 +57,15 @@ class _Pending:
     command: RobotCommand | None
     """The command; None if another process of this session sent it."""
     since: float
-    """When it was first sent."""
+    """When the command was first sent."""
     queried: float
-    """When it was last sent, queried or reported on."""
+    """When the command was last sent, queried or reported on."""
     heard: bool = False
     """Whether the robot has reported on it."""
     cancelled: bool = False
     """Whether the brain has cancelled it."""
     held: bool = False
-    """Whether it waits until the robot has received a command that stops it."""
+    """Whether the command waits until the robot has received another one that stops it."""
 
 
 Delegate = Callable[[str, Perform], bool]

@@ -18,7 +18,7 @@ class StateBox:
     parallel: bool = False
     """Whether the boxes inside are side by side."""
     final: bool = False
-    """Whether it is a final state."""
+    """Whether the state is a final state."""
     first: bool = False
     """Whether the enclosing state begins with it."""
     marked: bool = False

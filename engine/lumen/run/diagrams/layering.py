@@ -83,9 +83,7 @@ def _way(
 
 
 def _without_cycles(nodes: Sequence[N], edges: Sequence[Edge[N]]) -> list[Edge[N]]:
-    """Return the edges, with those reversed that close a cycle in a depth-first walk from the first node; loops are
-    left out.
-    """
+    """Return the edges without loops, those reversed that close a cycle in a depth-first walk from the first node."""
     out: dict[N, list[N]] = {n: [] for n in nodes}
     for one, other in edges:
         out[one].append(other)
@@ -172,9 +170,7 @@ def _neighbours(chains: Mapping[tuple[object, object], Sequence[object]]) -> dic
 
 
 def _order(layers: list[list[object]], joined: Mapping[object, Sequence[object]]) -> None:
-    """Sort each layer by the mean position of the nodes' neighbours in the layer before, down and up again; keep the
-    best.
-    """
+    """Sort each layer by the mean position of the neighbours in the layer before, down and up again; keep the best."""
     best, crossings = [list(layer) for layer in layers], _crossings(layers, joined)
     for sweep in range(SWEEPS):
         numbers = range(1, len(layers)) if sweep % 2 == 0 else range(len(layers) - 2, -1, -1)

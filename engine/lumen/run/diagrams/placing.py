@@ -23,7 +23,7 @@ class PlacedBox(NamedTuple):
 
     box: StateBox
     corner: Point
-    """Its upper left corner in the picture."""
+    """The upper left corner of the box in the picture."""
     size: Extent
     within: tuple["PlacedBox", ...] = ()
     """The boxes inside."""

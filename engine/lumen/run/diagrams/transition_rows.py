@@ -14,9 +14,7 @@ AGAIN = "again"
 
 
 def rows_of(machine: MachineDefinition, state: State, only: str = "") -> Iterator[str]:
-    """Yield a row for each target with the causes of its transitions; with `only`, a state's path, just those to that
-    state.
-    """
+    """Yield a row for each target with the causes of its transitions; `only` is the path of a single target."""
     by_target: dict[str, list[str]] = {}
     seen: set[str] = set()
     for transition in (t for t in state.transitions if not made(t.where)):

@@ -69,7 +69,7 @@ class OwnModulePart(Part):
 
     @property
     def status(self) -> dict[str, Any]:
-        """Its state for `lumen status`: `here`, `lost` or `awaited`, since when, and why it was lost."""
+        """The program's state for `lumen status`: `here`, `lost` or `awaited`, since when, and why it was lost."""
         state = "lost" if self._lost_at is not None else "here" if self._heard >= 0 or self._running else "awaited"
         return {"module": self.name, "state": state, "since": iso_time(self._since), "reason": self._reason or None}
 

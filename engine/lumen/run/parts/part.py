@@ -20,9 +20,9 @@ class Part:
     needs: Sequence[str] = ()
     """The names of the parts that must be there before it begins."""
     patient = False
-    """Whether it only waits for inputs, which may be delayed by NAP."""
+    """Whether the part only waits for inputs, which may be delayed by NAP."""
     watches = False
-    """Whether it is an `Observer` of the behaviour."""
+    """Whether the part is an `Observer` of the behaviour."""
 
     @property
     def over(self) -> bool:

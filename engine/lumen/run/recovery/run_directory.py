@@ -56,8 +56,9 @@ class RunDirectory:
         self._bus = ""
 
     def begin(self, project: Project, files: Mapping[str, bytes]) -> None:
-        """Store the files with which the exhibition starts; if no files were good so far, they count as the last good
-        ones.
+        """Store the files with which the exhibition starts.
+
+        If no files were good so far, they count as the last good ones.
         """
         if keeper := self.records.keeper:
             kept, good = keeper.kept(), keeper.good()

@@ -53,25 +53,25 @@ class StagedBundle:
 
     project: Project
     changes: tuple[Change, ...]
-    """Its changes from the bundle that runs."""
+    """The changes from the bundle that runs."""
     validation: Validation | None = None
     """The result of its check; None for a bundle that ran before."""
     who: str = "files"
     """The origin of the request: `files`, `command` or `trial`."""
     going: bool = False
-    """Whether it will be activated as soon as possible."""
+    """Whether the bundle will be activated as soon as possible."""
     now: bool = False
     """Whether to activate it without waiting for current actions."""
     back: bool = False
-    """Whether it ran before."""
+    """Whether the bundle ran before."""
     since: float = field(default_factory=time.monotonic)
-    """When its activation was requested [s]."""
+    """When the activation was requested [s]."""
     asked: object = None
     """The last snapshot from which it could not continue; None before any."""
     told: str = ""
     """The last reported reason for its delay."""
     objected: bool = False
-    """Whether it was refused because recorded visits would change."""
+    """Whether the bundle was refused because recorded visits would change."""
     trial: bool = False
     """Whether to activate it for one visitor."""
     between: bool = False

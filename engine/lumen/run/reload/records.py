@@ -106,9 +106,7 @@ class RunRecords:
             self._desk.submit(self.keeper.prune, *(project.hash for project in projects if project))
 
     def keep(self, exhibition: BehaviorLoop) -> None:
-        """Write the behaviour's snapshot if it is new, else a sign of life when one is due; skip both while a write
-        runs.
-        """
+        """Write the behaviour's snapshot if it is new, else a sign of life if due; do neither while a write runs."""
         snapshot = exhibition.runtime.snapshot
         if self.keeper is None or not self._settled():
             return

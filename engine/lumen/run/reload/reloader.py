@@ -178,9 +178,7 @@ class Reloader:
         )
 
     def write(self, change: Callable[[], Mapping[str, bytes]]) -> None:
-        """Let `change` write the running files to the project's folder; it returns the files that
-        the folder has then.
-        """
+        """Let `change` write the running files to the project's folder; it returns the files that are then there."""
         self._watcher.write(change)
 
     def tick(self, now: float) -> None:

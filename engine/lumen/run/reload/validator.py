@@ -165,8 +165,9 @@ def _saved_stories(project: Project, changed: Iterable[str]) -> list[Story]:
 
 
 def _touched_stories(project: Project, found: Iterable[Change], changed: Iterable[str]) -> list[Story]:
-    """Return the stories of changed behaviours, or all if movements or routes changed: the project's story, then by
-    length.
+    """Return the stories of changed behaviours, or all if movements or routes changed.
+
+    The project's story comes first, then the others by length.
     """
     saved = _saved_stories(project, changed)
     files = {change.file for change in found if change.risk is not Risk.COSMETIC or change.kind == "text"}

@@ -69,8 +69,9 @@ class ChosenJournal(NamedTuple):
     files: tuple[Path, ...]
 
     def entries(self) -> Iterator[RecordedEntry]:
-        """Yield the entries of the files; of a truncated file those before the cut. Raises JournalError for an
-        unreadable file.
+        """Yield the entries of the files; of a truncated file those before the cut.
+
+        Raises JournalError for an unreadable file.
         """
         for file in self.files:
             yield from read_journal(file).entries
@@ -112,8 +113,9 @@ def listed(root: Path, robot: str = "") -> list[tuple[Path, JournalHeader]]:
 
 
 def until(entries: Iterable[RecordedEntry], text: str) -> Iterator[RecordedEntry]:
-    """Yield the entries up to a time of day at the exhibition, `14:03` or `14:03:20`. Raises UsageError for other
-    texts.
+    """Yield the entries up to a time of day at the exhibition, `14:03` or `14:03:20`.
+
+    Raises UsageError for other texts.
     """
     wanted, clock, limit = requested_time(text), JournalClock(), None
     for entry in entries:

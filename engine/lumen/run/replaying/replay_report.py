@@ -18,7 +18,7 @@ class ReplayDifference(NamedTuple):
     visit: int
     """The number of the visit; 0 outside of visits."""
     at: float
-    """When it happened [s since 1970]."""
+    """The time of the difference [s since 1970]."""
     was: str
     """The recorded effect."""
     now: str
@@ -96,7 +96,7 @@ class TakenAgain(NamedTuple):
     stepped: bool
     """Whether a step was taken."""
     unknown: str = ""
-    """Why it can't be compared; empty if it can."""
+    """Why the step can't be compared; empty if it can."""
     differs: bool = False
     """Whether the replayed step differs from the recorded one."""
     was: str = ""
