@@ -1,4 +1,4 @@
-"""Measure how long an editor waits for `lumen lsp`: from the last key to the findings, and from a key to its completion.
+"""Measure how long an editor waits for `lumen lsp`: from the last key to the findings, and from a key to completion.
 
 The project is the shipped one, with a tour that was extended to 2,000 lines by repeated visits. A client types words
 into it over standard input and output, one key every 60 ms, and then sends the requests of an editor (symbols, folds,

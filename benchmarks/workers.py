@@ -4,8 +4,8 @@
 
 It prints robots per second and the ratio to one process, including all starts: of processes, of the simulation, and of
 compiled models. Dask's scheduler and workers run on this machine too, so more workers than cores have no benefit: their
-rows show the overhead of the cluster. Both figures are wall time, so the machine must be quiet. Processor time is valid on a
-busy machine as well; it is that of all processes, including their starts.
+rows show the overhead of the cluster. Both figures are wall time, so the machine must be quiet. Processor time is valid
+on a busy machine as well; it is that of all processes, including their starts.
 """
 
 import argparse
