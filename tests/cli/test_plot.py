@@ -16,7 +16,7 @@ from lumen.motion import Motion
 from lumen.project.formats.plots import controller_sheet, draw, explained_sheet, motion_sheet
 from tests.tables import for_each
 
-pytestmark = pytest.mark.rest  # dear
+pytestmark = pytest.mark.rest  # expensive
 
 HEAD = "fuzzy/head.yaml"
 SEVERAL = {

@@ -1,4 +1,4 @@
-"""`lumen replay`: the last run, a day, and what other files would have done."""
+"""`lumen replay` of the last run, of a day, and with other files."""
 
 import json
 from datetime import date
@@ -14,7 +14,7 @@ from tests.copying import copied_project
 
 @pytest.fixture
 def played(tmp_path: Path) -> Path:
-    """A small exhibition in which a visitor was."""
+    """The folder of a small exhibition after a visit."""
     folder = copied_project(ROOT / "examples/minimal", tmp_path / "minimal")
     (story,) = lumen.load(folder).stories
     with lumen.open(folder, story=story) as exhibition:

@@ -1,4 +1,4 @@
-"""Robots of URDF and MJCF as body files: what is read, what is guessed, what is told."""
+"""Imports of URDF and MJCF as body files: what is read, guessed and reported."""
 
 from contextlib import suppress
 from importlib.util import find_spec
@@ -29,7 +29,7 @@ LIMIT = '<limit lower="-1" upper="1.5" velocity="3" effort="2"/>'
 
 
 def urdf(*joints: str, extra: str = "", links: str = "abc") -> bytes:
-    """A robot with links a, b, c and these joints, each on a line of its own from line 3 on."""
+    """Return a URDF robot with links a, b, c and these joints, each on a line of its own from line 3 on."""
     return "\n".join(['<robot name="r">', "".join(map(LINK.format, links)) + extra, *joints, "</robot>"]).encode()
 
 
@@ -41,7 +41,7 @@ def joint(
 
 
 def imported(content: bytes) -> tuple[dict[str, Any], list[str]]:
-    """The data of the body, and what was told: line and message."""
+    """Return the data of the body, and the line and message of each finding."""
     text, found = read_robot("r.urdf", content, "r", "r.xml")
     assert not result_faults("r.yaml", text, "body")
     return yaml.safe_load(text), [f"{d.place.line}: {d.message}" for d in found]
@@ -72,7 +72,7 @@ def test_roles_of_our_own_bodies_are_guessed_as_they_are(name: str) -> None:
     ],
 )  # fmt: skip
 def test_joints_stand_where_mujoco_has_them(file: str) -> None:
-    """MuJoCo is the oracle: places, axes and limits of every hinge of models that we did not make."""
+    """Places, axes and limits of every hinge agree with MuJoCo's, in models that others made."""
     path = DM_CONTROL / file
     ours = mjcf_model(parse_xml(file, path.read_bytes()), file, ConversionFindings())
     spec = mujoco.MjSpec.from_file(str(path))
@@ -182,7 +182,9 @@ def test_a_robot_is_known_by_its_first_element() -> None:
 
 
 def test_a_urdf_becomes_the_mjcf_that_its_body_names(tmp_path: Path) -> None:
-    """Meshes that MuJoCo reads go with it, under a name; others are told, and the rest is there all the same."""
+    """Meshes that MuJoCo reads are included under a new name; others are reported, and the rest is converted
+    nevertheless.
+    """
     cube = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
     (tmp_path / "meshes").mkdir()
     (tmp_path / "meshes" / "my cube.obj").write_text(cube)

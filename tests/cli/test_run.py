@@ -1,4 +1,4 @@
-"""`lumen run`: the story, its transcript, its exit codes, and one line for whatever can't be."""
+"""`lumen run`: the story, its transcript, its exit codes, and one line for each invalid request."""
 
 import os
 import re

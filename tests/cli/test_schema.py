@@ -22,7 +22,7 @@ SAMPLES = {"examples", "enum", "const", "default", "properties"}
 
 
 def properties(schema: Any, path: tuple[str, ...] = ()) -> Iterator[tuple[str, Any]]:
-    """Every property of a schema and of the schemas within it."""
+    """Yield each property of a schema and of the schemas within it, with its path."""
     if not isinstance(schema, dict):
         return
     for name, inner in schema.get("properties", {}).items():
@@ -112,7 +112,7 @@ MINE = """{
 
 
 def test_comments_in_settings_stay(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Also commas behind which nothing comes; and a second time changes nothing."""
+    """Trailing commas stay, too, and a second run changes nothing."""
     monkeypatch.chdir(ROOT)
     file = tmp_path / "settings.json"
     file.write_text(MINE)

@@ -23,7 +23,7 @@ SONAR = "avatar.NAO.data.sonar"
 
 
 class Exhibition:
-    """A bus on which a robot's senses come, and its commands are answered; `options` lead the commands to it."""
+    """A bus with a robot's senses, which answers its commands; with `options` the commands find it."""
 
     def __init__(self, bus: Bus, options: list[str]) -> None:
         self.options, self._bus, self._ending = options, bus, threading.Event()
@@ -106,7 +106,7 @@ def test_list_hz_and_bw_measure(run: Run) -> None:
     listed: dict[str, dict[str, Any]] = {}
 
     def heard() -> bool:
-        """Whether all were sent in half a second; on a slow machine at a later try."""
+        """Return whether half a second brought all messages; on a slow machine a later try does."""
         listed.update({row["key"]: row for row in _topics(run, "list")})
         return bool(listed[SONAR]["messages"] >= 2 and "lumen.note" in listed)
 
@@ -118,7 +118,7 @@ def test_list_hz_and_bw_measure(run: Run) -> None:
     assert not listed["lumen.NAO.visual.face.detection"]["alias"]
 
     def measured() -> bool:
-        """Whether more than one message came in the time; no more can come than are sent, every 20 ms."""
+        """Return whether more than one message came in the time; at most one is sent every 20 ms."""
         (sonar,) = _topics(run, "hz", "sonar")
         return sonar["hz"] is not None and 0 < sonar["hz"] < 60 and sonar["longest_gap"] > 0.0
 
@@ -222,7 +222,7 @@ def test_the_doctor_finds_what_a_user_may_not(
     refused, out = ("`command` can't be read: ACCESS_REFUSED", "`image` can't be sent: ACCESS_REFUSED"), ""
 
     def told() -> bool:
-        """Whether the broker, on a slow machine at a later try, answers in the time that the doctor listens."""
+        """Return whether the broker answered while the doctor listened; on a slow machine a later try does."""
         nonlocal out
         assert main(["doctor", "--bus", broker.url_of("eyes"), str(ROOT)]) == 1
         out = capsys.readouterr().out

@@ -16,7 +16,7 @@ from tests.waiting import until
 
 
 class EndlessInput:
-    """Gives as many characters as it is asked for, until it `ends`."""
+    """Input that has as many characters as are requested, until it `ends`."""
 
     def __init__(self) -> None:
         self.calls, self.ends = 0, False
@@ -47,7 +47,7 @@ def test_a_line_without_end_fills_no_memory_and_holds_up_no_tick(monkeypatch: py
 
 
 class Hall:
-    """Feels hands."""
+    """Keeps the touches that it is told of."""
 
     def __init__(self) -> None:
         self.sensors, self.felt = ("FrontTactil", "LeftBumper"), list[tuple[str, bool]]()
@@ -102,7 +102,7 @@ def test_what_can_be_typed_is_said(line: str, says: str) -> None:
 
 
 def hall() -> SimpleNamespace:
-    """A project without routes of its own."""
+    """Return a project without routes of its own."""
     return SimpleNamespace(routes={}, robot="NAO", key_of=lambda route: default_key(route, "NAO"))
 
 

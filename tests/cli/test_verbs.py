@@ -1,4 +1,4 @@
-"""Every verb alike: a page that is true, examples that can be typed, and an object for programs."""
+"""Every verb has a correct page, examples that can be typed, and an object for programs."""
 
 import json
 import shlex

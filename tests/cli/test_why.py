@@ -1,4 +1,4 @@
-"""`lumen why` and `lumen why-not`: of an exhibition in Python, of one that runs, and of a journal when none does."""
+"""`lumen why` and `lumen why-not` explain an exhibition in Python, a running one, or a journal."""
 
 import json
 from collections.abc import Iterator
@@ -26,7 +26,7 @@ REASON = {"because", "text", "file", "line", "false", "change", "note"}
 
 @pytest.fixture(scope="module")
 def greeted() -> Iterator[Exhibition]:
-    """A visitor was greeted, and asked for the name; what they said then was not understood."""
+    """An exhibition that greeted a visitor, asked for the name, and did not understand the answer."""
     with lumen.open() as exhibition:
         exhibition.send("face", {"x": 160, "y": 120})
         exhibition.run(12.0)

@@ -38,7 +38,7 @@ states:
 
 
 class StoppedTime:
-    """Stands for the module `time`: it passes only while one sleeps."""
+    """A stand-in for the module `time`, whose time passes only in `sleep`."""
 
     def __init__(self) -> None:
         self.now, self.slept = 100.0, list[float]()
@@ -75,7 +75,7 @@ def long(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.fixture(params=["simulated", "real"])
 def sleeper(tmp_path: Path, request: pytest.FixtureRequest) -> Iterator[Exhibition]:
-    """One that waits to be spoken to, in real time."""
+    """An exhibition that waits for a visitor's words, in real time."""
     loaded = lumen.load(project(tmp_path))
     setup = set_up("recording", loaded, "1")
     if request.param == "real":
@@ -105,7 +105,7 @@ def ticks_of(show: Exhibition) -> Sequence[float]:
 
 
 def lived_until(show: Exhibition, state: str) -> None:
-    """Naps and ticks until it is in that state; within the time that a test has."""
+    """Nap and tick until the exhibition is in that state."""
     while state not in show.configuration:
         show.node.nap()
         show.node.tick()

@@ -24,7 +24,7 @@ from tests.waiting import Collector
 
 
 class Outside:
-    """The world's time, in which nothing takes any."""
+    """A clock of the outside world, which advances only if a test advances it."""
 
     def __init__(self) -> None:
         self.now = 100.0
@@ -137,7 +137,7 @@ def test_a_behaviour_hears_once_that_its_ticks_stopped() -> None:
 
 @pytest.mark.parametrize(("speed", "pace"), [(1.0, 0.85), (4.0, 0.5), (1.0, 1.02)])
 def test_the_clock_of_another_process_follows_the_robots(speed: float, pace: float) -> None:
-    """Timers there and the robot here differ by no more than messages take, however slow the robot's time is."""
+    """The other process's time differs from the robot's by at most a message's delay, however slow the robot is."""
     outside, random = Outside(), Random(1)
     clock, began, last = FollowingClock(speed, outside), 100.0, 0.0
     offsets = []

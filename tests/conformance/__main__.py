@@ -32,7 +32,7 @@ def main() -> int:
 
 
 def report(outcomes: Sequence[Outcome], without: int) -> Iterator[str]:
-    """Return the summary, the adjusted cases, and the failing ones by reason; `without` cases have no driver."""
+    """Yield the summary, the adjusted cases, and the failing ones by reason; `without` cases have no driver."""
     yield f"{'suite':8}{'cases':>8}{'pass as given':>16}{'pass adjusted':>16}{'fail':>8}"
     for suite in ("W3C", "SCION"):
         yield _row(suite, [o for o in outcomes if o.case.suite == suite])

@@ -25,7 +25,7 @@ TABLE = Path(__file__).parent / "unsupported.yaml"
 
 @dataclass(frozen=True)
 class Case:
-    """`name` is for example `parallel/test1`; `driver` is None if the case has no driver."""
+    """A case; `name` is for example `parallel/test1`, and `driver` is None if the case has no driver."""
 
     name: str
     chart: Path
@@ -41,19 +41,19 @@ class Case:
         return _read(self.chart)
 
     def complaints(self) -> list[str]:
-        """The errors of importing the chart and the charts in other files that it invokes."""
+        """Return the errors of importing the chart and the charts in other files that it invokes."""
         found = [d.message for d in self.read()[1] if d.severity is Severity.ERROR]
         for invoked in self.invoked().values():
             found += invoked.complaints()
         return found
 
     def invoked(self) -> "dict[str, Case]":
-        """The charts in other files that it invokes, by the names of the behaviours that they become."""
+        """Return the charts in other files that it invokes, by the names of the behaviours that they become."""
         names = re.findall(r'<invoke [^>]*src="file:([^"]*)\.scxml"', self.chart.read_text("utf-8"))
         return {name: _case(chart) for name in names for chart in sorted(self.chart.parent.glob(f"{name}.*scxml"))}
 
     def behaviors(self) -> dict[str, dict[str, Any]]:
-        """The imported behaviours that the chart invokes, by name."""
+        """Return the imported behaviours that the chart invokes, by name."""
         return {name: data for name, case in self.invoked().items() if (data := case.read()[0])}
 
 
@@ -66,7 +66,7 @@ def _read(chart: Path) -> tuple[dict[str, Any] | None, list[Diagnostic]]:
 
 
 def machine_of(data: Mapping[str, Any]) -> Machine:
-    """The machine; behaviours that it invokes are there, and do nothing."""
+    """Return the machine; the behaviours that it invokes exist, and do nothing."""
     rows = list(_invokes(data))
     others: dict[str, dict[str, Any]] = {}
     for row in rows:
@@ -88,7 +88,7 @@ def _invokes(state: Mapping[str, Any]) -> Iterator[Mapping[str, Any]]:
 
 @cache
 def table() -> Mapping[str, Any]:
-    """The table of the cases that do not pass, with the reasons."""
+    """Return the table of the cases that do not pass, with the reasons."""
     document, diagnostics = parse(TABLE.name, TABLE.read_bytes())
     assert document is not None
     assert not diagnostics
@@ -146,7 +146,7 @@ def _case(chart: Path) -> Case:
 
 
 def play(machine: Machine, driver: Mapping[str, Any]) -> Iterator[tuple[list[str], list[str]]]:
-    """The atomic states expected and those that are active: at first, and after each event, in virtual time."""
+    """Yield the atomic states expected and those that are active: at first, and after each event, in virtual time."""
     now, steps = 0.0, [initial(machine)]
     yield sorted(driver["initialConfiguration"]), _atomic(machine, steps[-1].snapshot)
     for row in driver["events"]:
@@ -158,7 +158,7 @@ def play(machine: Machine, driver: Mapping[str, Any]) -> Iterator[tuple[list[str
 
 
 def _elapsed(machine: Machine, steps: list[Step], now: float) -> Iterator[Step]:
-    """The steps of all timers until then."""
+    """Yield the steps of all timers that are due until `now` [s]."""
     snapshot = steps[-1].snapshot
     while (event := due(snapshot)) is not None and event.at <= now:
         taken = step(machine, snapshot, event)

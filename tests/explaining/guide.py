@@ -64,12 +64,12 @@ routes:
 
 
 def guide(**changes: Any) -> MachineDefinition:
-    """The machine of the guide; `changes` are keys of its file."""
+    """Return the machine of the guide; `changes` replace keys of its file."""
     return machine_from_dict({**yaml.safe_load(GUIDE.replace("on:", "'on':")), **changes}, "guide", {})
 
 
 def guide_in(folder: Path, **sayings: str) -> Path:
-    """A project of the guide, with files of sayings by their names; its folder."""
+    """Write a project of the guide, with files of sayings by name; return its folder."""
     (folder / "behaviors" / "sayings").mkdir(parents=True)
     (folder / "lumen.yaml").write_text(SETTINGS, "utf-8")
     (folder / "behaviors" / "guide.yaml").write_text(GUIDE, "utf-8")

@@ -1,4 +1,4 @@
-"""Random machines that live: events from outside at their times, timers, and a robot that answers."""
+"""Runs random machines with events at given times, timers, and a robot that answers."""
 
 from contextlib import suppress
 from typing import Any, NamedTuple
@@ -25,7 +25,7 @@ inputs: st.SearchStrategy[list[tuple[str, Any]]] = st.lists(
 
 
 def timed(happenings: list[tuple[str, Any]]) -> list[Event]:
-    """Each at a time of its own, sometimes long after the one before."""
+    """Return an event for each happening, at times 61 or 413 ms apart."""
     at, events = 0.0, []
     for number, (name, data) in enumerate(happenings):
         at = to_the_nanosecond(at + (0.061 if number % 3 else 0.413))

@@ -14,7 +14,7 @@ from lumen.statechart.direct_entry import entered_directly
 
 
 class Play:
-    """A machine that is played, and remembered."""
+    """A machine with the steps that it has taken."""
 
     def __init__(self, data: dict[str, Any], **behaviors: dict[str, Any]) -> None:
         self.machine = Machine.from_dict({"id": "m", **data}, behaviors=behaviors)

@@ -69,7 +69,7 @@ def possible(machine: Machine, guard: str) -> bool:
 
 
 def check(guard: str, tally: Counter[str]) -> None:
-    """For a false guard, the proposed change lets the transition fire."""
+    """Check that, for a false guard, the proposed change lets the transition fire."""
     data: Any = {"id": "m", "initial": "a", "context": CONTEXT, "phrases": PHRASES, "states": {"a": {}, "b": {}}}
     data["states"]["a"]["on"] = {"e": {"guard": guard, "target": "b"}}
     machine = Machine.from_dict(data)

@@ -31,7 +31,7 @@ PHRASES = {
     "negations": {"en": ["no", "dont", "do not"], "id": ["jangan"]},
     "questions": {"en": ["who", "why"], "id": ["mengapa"]},
 }
-"""Word lists of their own, whatever those that come with Lumen hold."""
+"""Word lists of these tests, independent of those that come with Lumen."""
 LISTS: dict[str, list[Any]] = {
     "exhibits": [{"id": "rex", "phrases": {"en": ["the rex", "rex"]}}, {"id": "organ", "phrases": {"en": ["organ"]}}]
 }

@@ -53,7 +53,7 @@ def test_what_is_closed_is_not_taken(data: Data, happenings: list[Any], brought:
 
 
 def test_enough_was_tried() -> None:
-    """Of both kinds there were some above, else it shows nothing."""
+    """The tests above met more than ten cases of each kind; else they would show nothing."""
     if _TALLY:
         assert min(_TALLY["taken"], _TALLY["not taken"], _TALLY["closed"]) > 10
 

@@ -12,7 +12,7 @@ from lumen.statechart import Machine, initial, step
 from tests.explaining.running import inputs, live, timed
 from tests.statechart.oracle.generating import EVENTS, Data, machine_data
 
-pytestmark = pytest.mark.rest  # dear
+pytestmark = pytest.mark.rest  # expensive
 
 NEXT, STOP = {"label": {"en": "Next", "de": "Weiter"}, "event": "next", "key": "n"}, {"label": "Stop", "event": "stop"}
 TOUR: dict[str, Any] = {

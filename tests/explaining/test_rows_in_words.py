@@ -1,4 +1,4 @@
-"""A row of `hears` in words: in pictures, in coverage, in what a step did, and in what differs between two versions."""
+"""Rows of `hears` in words: in diagrams, in coverage, in the log of a step, and in the differences between versions."""
 
 from typing import Any
 

@@ -52,7 +52,7 @@ def test_a_visit_that_is_not_understood() -> None:
 
 @pytest.mark.slow
 def test_a_tour_of_which_no_author_wrote_the_guards() -> None:
-    """In `for`, these stories wait for conditions in words, which are no expressions."""
+    """In `for`, these stories wait for conditions in words, which are not expressions."""
     tally = Counter[str]()
     check("visit", tally, "examples/museum")
     assert tally["end at a person"] > 10

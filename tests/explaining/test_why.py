@@ -19,7 +19,7 @@ PATIENT = settings(deadline=None, suppress_health_check=[HealthCheck.too_slow, H
 
 
 def effects(history: StepHistory) -> list[Effect]:
-    """The last state that each step entered, and the last thing that it did."""
+    """Return the last six effects: the last state that each step entered, and its last command."""
     found = []
     for number, one in enumerate(history.steps):
         if not one.before:
@@ -30,7 +30,7 @@ def effects(history: StepHistory) -> list[Effect]:
 
 
 def last(events: list[Event]) -> float:
-    """Until when it is looked [s]."""
+    """Return the end of the observation, 1.5 s after the last event [s]."""
     return events[-1].at + 1.5
 
 
@@ -39,7 +39,7 @@ def all_of(steps: list[RecordedStep]) -> set[Outcome]:
 
 
 def check(data: Data, events: list[Event], tally: Counter[str]) -> None:
-    """Flip each input, and compare the outcome with the explanation."""
+    """Leave out each event in turn, and compare the outcome with the explanation."""
     machine = Machine.from_dict(data)
     history = StepHistory(live(machine, events, last(events)))
     without = {

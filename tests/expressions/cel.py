@@ -1,4 +1,4 @@
-"""Google's CEL as an oracle: the same expression there, its value, and where the two differ on purpose."""
+"""Google's CEL as an oracle: the value of an expression there, and the intended differences."""
 
 from collections.abc import Iterator, Mapping
 from ctypes import py_object, pythonapi
@@ -32,7 +32,7 @@ def by_lumen(source: str, scope: Scope) -> Outcome:
 
 
 def by_cel(source: str, scope: Scope) -> Outcome:
-    """The outcome in CEL, without its type checker, since lint plays that part here; RuntimeError if unreadable."""
+    """Return the outcome in CEL, without its type checker, since lint has that part. RuntimeError if unreadable."""
     data = {"context": scope.context, "event": scope.event, "state": scope.state}
     result = ENVIRONMENT.compile(source, disable_check=True).eval(data=data)
     if result.type().name() == "ERROR":
@@ -44,7 +44,7 @@ def by_cel(source: str, scope: Scope) -> Outcome:
 
 
 def in_cel(part: Any) -> Any:
-    """A tree, or a part of one, with CEL's methods in place of our functions."""
+    """Return a tree, or a part of one, with CEL's methods in place of our functions."""
     match part:
         case FunctionCall(function=function, arguments=arguments) if function in METHODS:
             return FunctionCall(f".{METHODS[function]}", in_cel(arguments))
@@ -72,7 +72,7 @@ def _ordered(value: Any) -> Any:
 def compare(node: ExpressionNode, scope: Scope) -> bool:
     """Return whether the expression has the same outcome in both.
 
-    AssertionError if it differs although all parts agree, and it is not in the table of docs/expressions.md.
+    Raises AssertionError if it differs although all parts agree, and it is not in the table of docs/expressions.md.
     """
     alike = not [child for child in children(node) if not compare(child, scope)]
     ours, theirs = by_lumen(unparse(node), scope), by_cel(unparse(in_cel(node)), scope)
@@ -83,7 +83,7 @@ def compare(node: ExpressionNode, scope: Scope) -> bool:
 
 
 def is_meant(node: ExpressionNode, scope: Scope, ours: Outcome, theirs: Outcome) -> bool:
-    """Return whether the table lists the difference in this one step from the values of the parts."""
+    """Return whether the table lists this difference, which arises in one step from the values of the parts."""
     values = [by_lumen(unparse(child), scope)[1:] for child in children(node)]
     flat = [leaf for value in values for leaf in leaves(list(value))]
     kinds = {type(value) for value in flat}
@@ -107,7 +107,7 @@ def is_meant(node: ExpressionNode, scope: Scope, ours: Outcome, theirs: Outcome)
 
 
 def leaves(value: Any) -> Iterator[Any]:
-    """The values inside lists and maps, or the value itself."""
+    """Yield the values inside lists and maps, or the value itself."""
     match value:
         case Mapping():
             for item in value.values():

@@ -90,7 +90,7 @@ def outcome(value: object) -> Outcome:
 
 
 def readable(source: str) -> Outcome:
-    """The outcome in CEL; an error if CEL can't read the expression."""
+    """Return the outcome in CEL; an error if CEL can't read the expression."""
     try:
         return by_cel(source, SCOPE)
     except RuntimeError:

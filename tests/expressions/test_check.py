@@ -28,7 +28,7 @@ EVENTS = {"heard": HEARD, "face": FACE}
 
 
 def check(source: str, events: object = "heard", **more: object) -> list[tuple[str, str]]:
-    """The codes, each with the part of the source that it points at."""
+    """Return the codes, each with the part of the source that it points at."""
     arriving = {"heard": HEARD} if events == "heard" else events
     names = {"phrases": ["dance"], "answers": ["faq"], "states": ["talk", "talk.ask"]}
     findings = check_expression(source, context=CONTEXT, events=arriving, **(names | more))  # type: ignore[arg-type]

@@ -36,7 +36,7 @@ from lumen.expressions.tree import (
 from tests.expressions.scopes import SCOPE
 
 PATIENT = settings(deadline=None)
-"""A busy machine is no fault of an expression."""
+"""No time limit: a busy machine is no fault of an expression."""
 
 WORDS = st.sampled_from(
     ["n", "x", "name", "list", "map", "a", "b", "none", "yes", "data", "result", "path", "q", "in", "true"]
@@ -51,7 +51,7 @@ SIGNS = st.sampled_from(["==", "!=", "<", "<=", ">", ">=", "in", "+", "-", "*", 
 
 
 def _minus(operand: ExpressionNode) -> bool:
-    """`-` before a number is read as a part of it, so that the tree of it can't come from a text."""
+    """Return whether a text can have this operand of `-`: before a number, `-` is read as a part of it."""
     return not (isinstance(operand, Literal) and type(operand.value) in (int, float))
 
 
@@ -108,7 +108,7 @@ def test_printed_and_parsed_it_is_the_same_tree(tree: ExpressionNode) -> None:
 
 
 def repr_without_places(tree: Any) -> Any:
-    """The tree as tuples, in which 1, 1.0 and true are different."""
+    """Return the tree as tuples, in which 1, 1.0 and true are different."""
     if isinstance(tree, tuple):
         return tuple(map(repr_without_places, tree))
     if not hasattr(tree, "__slots__"):
@@ -140,7 +140,7 @@ def test_evaluation_is_pure(tree: ExpressionNode) -> None:
 @PATIENT
 @given(TREES)
 def test_what_is_found_wrong_has_no_value(tree: ExpressionNode) -> None:
-    """A type mismatch at the top that lint is sure of is an error at run time, or a comparison decided before."""
+    """If lint reports the left operand of `-` as a type mismatch, the expression has no value at run time."""
     source = unparse(Binary("-", tree, Literal(1)))
     found = check_expression(source, context=None)
     if any(f.code == "type-mismatch" and f.message.endswith("needed by `-`") and f.offset == 0 for f in found):

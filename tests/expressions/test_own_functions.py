@@ -75,7 +75,7 @@ def test_a_broken_function_can_not_be_put_in() -> None:
 
 @for_each("depth", [8, 60])
 def test_an_expression_that_grows_too_large_is_refused_at_once(depth: int) -> None:
-    """Eight calls inside each other would have 3^8 names, sixty more than a computer can hold."""
+    """Eight nested calls would have 3^8 names, sixty more than a computer can hold."""
     functions = {"triple": function("n + n + n", NUMBER, n=NUMBER)}
     source = "1"
     for _ in range(min(depth, 40)):

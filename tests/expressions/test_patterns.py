@@ -11,7 +11,7 @@ from lumen.expressions.patterns import compile_pattern
 from tests.tables import for_each
 
 PATIENT = settings(deadline=None)
-"""A busy machine is no fault of an expression."""
+"""No time limit: a busy machine is no fault of an expression."""
 
 ATOMS = st.sampled_from(["a", "b", "c", ".", "[ab]", "[^a]", r"\w", r"\d", r"\s", r"\.", "1", " "])
 ANCHORS = st.sampled_from(["^", "$", r"\b", r"\B"])

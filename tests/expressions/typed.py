@@ -27,7 +27,7 @@ TEXTS = st.one_of(
     st.text("ab c", max_size=4),
     st.text(st.characters(exclude_characters="\0", exclude_categories=["Cs"]), max_size=4),
 )
-"""Without NUL, at which the oracle cuts the texts it is given."""
+"""Texts without NUL, at which the oracle would cut them."""
 
 NUMBERS = st.one_of(
     st.integers(-3, 9),
@@ -57,7 +57,7 @@ def expressions(draw: st.DrawFn, depth: int = 4) -> ExpressionNode:
 
 
 class Writer:
-    """Writes one expression, from the outside."""
+    """Draws a random expression, from the outside to the inside."""
 
     def __init__(self, draw: st.DrawFn) -> None:
         self.draw = draw
@@ -69,7 +69,7 @@ class Writer:
         return self.of(self.pick(*KINDS), depth)
 
     def of(self, kind: str, depth: int) -> ExpressionNode:
-        """An expression of that kind; one in twelve is of any kind, or of none known."""
+        """Return an expression of that kind; one in twelve is a path, or of any kind."""
         stray = self.draw(st.integers(0, 11)) == 11
         if stray:
             return self.path() if depth == 0 or self.draw(st.booleans()) else self.any(depth - 1)
@@ -96,7 +96,7 @@ class Writer:
         return MapLiteral(tuple(values), tuple(map(Literal, values.values())))
 
     def path(self) -> ExpressionNode:
-        """A path that may lead nowhere."""
+        """Return a path that may lead nowhere."""
         node: ExpressionNode = FieldAccess(Identifier("context"), self.pick("any", "m", "l", "n", "none"))
         if self.draw(st.booleans()):
             node = FieldAccess(Identifier("event"), "data")
