@@ -14,7 +14,7 @@ Live = Callable[[float], list[Event]]
 
 @pytest.fixture
 def robot(project: Project) -> Iterator[Lockstep]:
-    """The adapter on a fake of its own."""
+    """The adapter of NAOqi, connected to a fake robot of its own."""
     one = Lockstep(project)
     yield one
     one.close()

@@ -1,4 +1,4 @@
-"""A NAO that is not there: a NAOqi on this machine, served by qi, and the hall around it."""
+"""A fake NAO: a NAOqi on this machine, served by qi, and the hall around it."""
 
 from collections.abc import Iterable
 from typing import Any
@@ -14,7 +14,7 @@ from tests.features.naoqi.world import World
 
 
 class FakeNao:
-    """Answers at `url`; `world` is what it is about, `times` lets its time pass. `without` are services it lacks."""
+    """Answers as a NAO at `url`; `world` is its state, `times` its clock, and `without` names services it lacks."""
 
     def __init__(self, body: Body, *, without: Iterable[str] = (), version: str = "2.8.6.23", port: int = 0) -> None:
         demand()
@@ -32,7 +32,7 @@ class FakeNao:
         self.open(port)
 
     def open(self, port: int = 0) -> None:
-        """Come up, on any free port or on this one."""
+        """Serve on this port, or on any free one if it is 0."""
         self._session = qi.Session()
         self._session.listenStandalone(f"tcp://127.0.0.1:{port}")
         self._own[ALAudioDevice] = self.microphones = ALAudioDevice(self.world, self._session)
@@ -58,7 +58,7 @@ class FakeNao:
         self._visitor = visitor
 
     def face(self) -> tuple[float, float] | None:
-        """The position of the visitor's face in the top camera's image [px], or None if there is no visitor."""
+        """Return the position of the visitor's face in the top camera's image [px], or None if there is no visitor."""
         if self._visitor is None:
             return None
         angles = self.world.joints.angles()

@@ -31,7 +31,7 @@ def straight(start: Mapping[str, float], goal: Mapping[str, float], seconds: flo
 
 
 def bezier(start: float, times: Sequence[float], controls: Sequence[Any]) -> Callable[[float], float]:
-    """One joint's way as ALMotion documents it; the beginning has a handle of no length."""
+    """Return a joint's angle by time, as ALMotion documents it. Raises RuntimeError for a bad control point."""
     keys = [(0.0, start, (0.0, 0.0), (0.0, 0.0))]
     for time, (angle, (kind_in, *into), (kind_out, *out)) in zip(times, controls, strict=True):
         if kind_in != 3 or kind_out != 3 or into[0] > 0 or out[0] < 0:
@@ -58,7 +58,7 @@ def _cubic(u: float, a: float, b: float, c: float, d: float) -> float:
 
 
 class Joints:
-    """Where the joints stand [rad], and what moves them."""
+    """The angles of the joints [rad], and the tasks that move them."""
 
     def __init__(self, body: Body, times: Times) -> None:
         self.body, self._times = body, times
@@ -85,7 +85,7 @@ class Joints:
         return dict(self._angles)
 
     def move(self, goal: Mapping[str, float], seconds: float, *, blocking: bool = True) -> Any:
-        """Go there straight in so long; what a blocking call returns."""
+        """Move straight to `goal` [rad] in so many seconds; return the result of the call."""
         start = self.angles()
         return self.follow(list(goal), straight(start, dict(goal), seconds), seconds, blocking=blocking)
 

@@ -27,7 +27,7 @@ class Lockstep(NaoqiRobot):
         until(self._settled, every=0.0005)
 
     def _settled(self) -> bool:
-        """The fake robot and the adapter wait for nothing of each other."""
+        """Return whether the fake robot and the adapter wait for nothing of each other."""
         answered = self._session.pending == self.nao.times.waiting and self._naoqi_events.heard >= self.nao.told
         return answered or not self._session.up
 
@@ -39,7 +39,7 @@ class Lockstep(NaoqiRobot):
         self.settle()
 
     def sound(self) -> None:
-        """The tour's visitor is heard as words alone."""
+        """Do nothing: the tour's visitor is heard as words, without sound."""
 
     def plug(self, plugged: bool) -> None:
         self.nao.world.plugged = plugged

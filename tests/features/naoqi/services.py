@@ -30,7 +30,7 @@ class ALMemory:
         return [self._value(key) for key in keys]
 
     def raised(self, name: str, value: Any) -> bool:
-        """Tell who listens; whether anybody could."""
+        """Raise an event for its subscribers; return whether ALMemory knows it."""
         if name in self.events:
             self.events[name].signal(value)
         return name in self.events
@@ -197,7 +197,7 @@ class ALAudioDevice:
         self._world.times.at(self._world.times.now + self.SECONDS, feed)
 
     def _heard(self, listener: Any, part: bytes) -> bool:
-        """Whether the listener is still there."""
+        """Send a part of the sound; return whether the listener is still connected."""
         try:
             listener.processRemote(1, len(part) // 2, [0, 0], part)
         except RuntimeError:

@@ -16,7 +16,7 @@ from tests.features.naoqi.lockstep import Lockstep
 
 
 def reason(events: list) -> str:  # type: ignore[type-arg]
-    """Why the only command that was answered failed."""
+    """Return why the only answered command failed."""
     [answer] = [e for e in events if ".command." in e.name]
     assert answer.name.startswith("error."), answer
     return str(answer.data["reason"])

@@ -16,7 +16,7 @@ from tests.features.naoqi.lockstep import Lockstep
 
 
 def sent(robot: Lockstep) -> list[tuple[str, ...]]:
-    """The joints of each call of `setAngles`."""
+    """Return the joints of each call of `setAngles`."""
     return [tuple(names) for names, _, _ in robot.nao.world.called("setAngles")]
 
 
@@ -86,7 +86,7 @@ def test_it_is_still(robot: Lockstep, live: LiveFor, project: Project, how: str)
 
 
 def eyes(robot: Lockstep) -> list[int]:
-    """The colours in which the eyes were lit, in order."""
+    """Return the colours in which the eyes were lit, in order."""
     return [colour for group, colour, _ in robot.nao.world.called("fadeRGB") if group == "FaceLeds"]
 
 

@@ -16,7 +16,7 @@ from tests.features.naoqi.lockstep import Lockstep
 
 
 def recorded(events: list[Event]) -> tuple[str, tuple[int, int, int], bytes]:
-    """The name of the only recording, its channels, bytes a sample and rate, and its samples."""
+    """Return the name of the only recording, its channels, bytes per sample and rate [Hz], and its samples."""
     [data] = [event.data for event in events if event.name == RECORDED]
     with wave.open(io.BytesIO(base64.b64decode(data["content"]))) as file:
         kind = file.getnchannels(), file.getsampwidth(), file.getframerate()

@@ -1,4 +1,4 @@
-"""Each sense, what may be wrong with it, and that it costs nothing but itself."""
+"""Each sense of the robot, its faults, and that a fault in one affects no other."""
 
 import logging
 

@@ -9,7 +9,7 @@ from lumen.robot.recording import RecordingRobot
 from tests.features.naoqi.lockstep import Lockstep
 from tests.tour.playing import Run, play
 
-pytestmark = pytest.mark.rest  # dear
+pytestmark = pytest.mark.rest  # expensive
 
 
 def played(project: Project, robot: Lockstep | RecordingRobot) -> Run:
@@ -17,7 +17,7 @@ def played(project: Project, robot: Lockstep | RecordingRobot) -> Run:
 
 
 def guided(run: Run) -> list[str]:
-    """The states that a run entered, without those that depend on when a camera sees a face."""
+    """Return the states that a run entered, without those that depend on when a camera sees a face."""
     return [state for state in run.entered if not state.startswith("face.")]
 
 

@@ -11,7 +11,7 @@ from tests.features.naoqi.library import qi
 
 
 class Blocked:
-    """A call that blocks until `end`: what its caller gets is a future."""
+    """A call that blocks until `end`; its caller gets a future."""
 
     def __init__(self, times: "Times") -> None:
         self._times, self._promise, self.over = times, qi.Promise(), False
@@ -32,7 +32,7 @@ class Blocked:
 
 
 class Times:
-    """`now` [s]; `waiting` counts the calls that block."""
+    """The fake robot's time, `now` [s]; `waiting` counts the calls that block."""
 
     def __init__(self) -> None:
         self.now, self.waiting = 0.0, 0
@@ -46,7 +46,7 @@ class Times:
             heapq.heappush(self._due, (when, next(self._number), do))
 
     def block(self, seconds: float, then: Callable[[], Any] = lambda: None) -> Blocked:
-        """A call that takes so long and returns what `then` does."""
+        """Return a call that takes so many seconds and returns the result of `then`."""
         with self.lock:
             blocked = Blocked(self)
             self.at(self.now + seconds, lambda: None if blocked.over else blocked.end(then()))
@@ -63,7 +63,7 @@ class Times:
             self.now = until
 
     def run(self, rate: float = 1.0) -> None:
-        """Let time pass by itself from now on, `rate` times as fast as outside."""
+        """Let time pass by itself from now on, `rate` times as fast as real time."""
         last = time.monotonic()
 
         def live() -> None:

@@ -37,5 +37,5 @@ class World:
         self.calls.append((self.times.now, method, arguments))
 
     def called(self, method: str) -> list[tuple[Any, ...]]:
-        """The arguments of each call of that method."""
+        """Return the arguments of each call of that method."""
         return [arguments for _, name, arguments in self.calls if name == method]

@@ -21,7 +21,7 @@ def daemon() -> Iterator[FakeDaemon]:
 
 @pytest.fixture
 def robot(project: Project, daemon: FakeDaemon) -> Iterator[Driven]:
-    """A robot that sleeps."""
+    """The adapter of a robot that sleeps."""
     one = Driven(project, daemon.url)
     yield one
     one.close()
@@ -29,7 +29,7 @@ def robot(project: Project, daemon: FakeDaemon) -> Iterator[Driven]:
 
 @pytest.fixture
 def awake(robot: Driven) -> Driven:
-    """The same, woken."""
+    """The robot after the command `wake`."""
     from lumen.language.commands import Wake
 
     assert robot.answer("wake", Wake()).name == "done.command.wake"

@@ -16,7 +16,7 @@ from tests.waiting import until
 
 
 def reachy_project() -> Project:
-    """The shipped exhibition, performed by a Reachy Mini."""
+    """Return the shipped exhibition, performed by a Reachy Mini."""
     before = os.environ.get(MODEL_VARIABLE)
     os.environ[MODEL_VARIABLE] = "reachy_mini"
     try:
@@ -29,7 +29,7 @@ def reachy_project() -> Project:
 
 
 class Driven:
-    """The robot at `url`; `events` is all that it answered and noticed."""
+    """The robot at `url`; `events` are its answers and what it noticed."""
 
     def __init__(self, project: Project, url: str, voice: str = "none", root: Path = ROOT) -> None:
         self.robot = ReachyRobot(project.body, url, time.monotonic, voice=voice, root=root)
@@ -44,7 +44,7 @@ class Driven:
         until(condition, what=what, meanwhile=self.tick, shown=lambda: self.events[-8:])
 
     def answer(self, id: str, command: RobotCommand | None = None) -> Event:
-        """Start a command, unless it was started before; its answer."""
+        """Start a command, unless it is None because it was started before; return its answer."""
         if command is not None:
             self.robot.start(id, command)
         self.until(lambda: self._answered(id), f"the answer to {id}")

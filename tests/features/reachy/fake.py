@@ -1,4 +1,4 @@
-"""A fake of the daemon of Reachy Mini: its protocol, without a robot. `recorded.json` is what it is held to.
+"""A fake of the daemon of Reachy Mini: its protocol, without a robot. `recorded.json` has the real daemon's answers.
 
 It speaks HTTP and the WebSocket as `reachy-mini` 1.13.0 does with `--mockup-sim`: targets are reached at once,
 moves of the daemon go evenly, and while one runs targets are ignored. It has no physics, no motor and no sound.
@@ -31,7 +31,7 @@ ASLEEP = {**INIT, "head_x": -0.021, "head_z": -0.044, "head_pitch": 0.4258, LEFT
 class FakeDaemon:
     """The daemon at `url`; `joints` is the robot's pose, `targets` all that it got, and `asked` the HTTP requests.
 
-    `silent` sends nothing any more over sockets that are open. `media` is whether it plays sounds.
+    If `silent`, it sends nothing more over open sockets. If `media`, it plays sounds.
     """
 
     def __init__(self, port: int = 0, *, media: bool = False) -> None:
@@ -135,7 +135,7 @@ class FakeDaemon:
         }  # fmt: skip
 
     def move(self, goal: Mapping[str, float], mode: str = "", duration: float = MOVE_DURATION) -> str:
-        """Begin a move of the daemon; its id."""
+        """Begin a move of the daemon, and return its id."""
         name, stopped = str(uuid.uuid4()), threading.Event()
         self.moves[name] = stopped
         threading.Thread(target=self._play, args=(name, stopped, goal, mode, duration), daemon=True).start()
@@ -154,7 +154,7 @@ class FakeDaemon:
             self.joints = found
 
     def states(self) -> list[str]:
-        """The messages with the robot's pose."""
+        """Return the messages with the robot's pose."""
         joints = {**self.joints, **(self.held or {})}
         x, y, z, roll, pitch, yaw = (joints[name] for name in HEAD)
         rows = [[*row, at] for row, at in zip(rotation(roll, pitch, yaw), (x, y, z), strict=True)]
@@ -192,7 +192,7 @@ class FakeDaemon:
 
 
 def _pose(body: Mapping[str, Any], prefix: str = "") -> dict[str, float]:
-    """The joints in the body of `goto` or `set_target`."""
+    """Return the joints in the body of `goto` or `set_target`."""
     given = body.get(f"{prefix}head_pose") or {}
     head = {f"head_{name}": float(value) for name, value in given.items()}
     return {**dict.fromkeys(HEAD, 0.0), **head} if given else {}
@@ -209,7 +209,7 @@ class _Server(ThreadingHTTPServer):
     daemon_of: FakeDaemon
 
     def handle_error(self, request: Any, client_address: Any) -> None:
-        """A client that goes away is no news."""
+        """Print nothing: a client may disconnect at any time."""
 
 
 class _Handler(BaseHTTPRequestHandler):

@@ -17,7 +17,7 @@ UNKNOWN = {"uuid": "00000000-0000-4000-8000-000000000000"}
 
 
 def observed(url: str) -> dict[str, Any]:
-    """The answers of a daemon whose robot sleeps, step by step: the shape of each answer, and what counts of values."""
+    """Return the answers of a daemon whose robot sleeps, step by step: the shape of each, and some of the values."""
     api, found = DaemonApi(DaemonAddress(url)), dict[str, Any]()
 
     def note(name: str, method: str, path: str, body: Any = None) -> Any:
@@ -70,7 +70,7 @@ def settled(api: DaemonApi) -> dict[str, Any]:
 
 
 def messages(address: DaemonAddress) -> dict[str, Any]:
-    """The shapes of what the WebSocket sends of joints."""
+    """Return the shapes of the messages about joints on the WebSocket."""
     from websockets.sync.client import connect
 
     found: dict[str, Any] = {}
@@ -84,7 +84,7 @@ def messages(address: DaemonAddress) -> dict[str, Any]:
 
 
 def shape(value: Any) -> Any:
-    """The kinds of the values in JSON data: names of keys and lengths of lists of numbers are kept."""
+    """Return the kinds of the values in JSON data; names of keys and lengths of lists of numbers are kept."""
     match value:
         case dict():
             return {key: shape(each) for key, each in value.items()}
@@ -100,7 +100,7 @@ def shape(value: Any) -> Any:
 
 
 def rounded(full: dict[str, Any]) -> dict[str, Any]:
-    """The robot's pose, to a hundredth of a radian and a centimetre: and whether its motors are on."""
+    """Return the robot's pose, to a hundredth of a radian and a centimetre, and the mode of its motors."""
     pose = {name: round(value, 2) + 0.0 for name, value in full["head_pose"].items()}
     antennas = [round(angle, 2) for angle in full["antennas_position"]]
     return {"pose": pose, "antennas": antennas, "mode": full["control_mode"]}

@@ -16,12 +16,12 @@ from tests.waiting import until
 
 PROGRAM = ROOT / ".cache/reachy_mini/bin/reachy-mini-daemon"
 MISSING = ROOT / ".cache/reachy_mini.missing"
-"""Why the daemon could not be installed."""
+"""The file with the reason why the daemon could not be installed."""
 
 
 @cache
 def program() -> Path:
-    """The daemon's program, installed by the first test that needs it; skips the test if that is not possible."""
+    """Return the daemon's program, installed at the first call; skip the test if it can't be installed."""
     if MISSING.exists():
         pytest.skip(f"{MISSING.read_text().strip()} (delete {MISSING.relative_to(ROOT)} to try again)")
     script = ROOT / "tests/features/reachy/install_daemon.sh"

@@ -1,4 +1,4 @@
-"""The fake of Reachy Mini's daemon answers as the real one did that was recorded."""
+"""The fake of Reachy Mini's daemon answers as the real one, which was recorded."""
 
 import json
 

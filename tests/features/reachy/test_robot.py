@@ -22,12 +22,12 @@ from tests.waiting import HANG
 
 @pytest.fixture(autouse=True)
 def patient(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A daemon in a thread of a crowded machine may send nothing for longer than the real one does."""
+    """A fake daemon on a crowded machine may be silent for longer than the real one, before it counts as lost."""
     monkeypatch.setattr(link, "SILENCE", HANG)
 
 
 def data(robot: Driven, id: str, command: RobotCommand) -> str:
-    """The reason why a command fails."""
+    """Return the reason why a command fails."""
     event = robot.answer(id, command)
     assert event.name == f"error.command.{id}"
     return str(event.data["reason"])

@@ -14,7 +14,7 @@ from tests.features.simulation.walks import on_the_floor
 
 @cache
 def shipped(name: str) -> Body:
-    """The body of `models/NAME.yaml`."""
+    """Return the body of `models/NAME.yaml`."""
     document, _ = parse(f"models/{name}.yaml", (MODELS / f"{name}.yaml").read_bytes())
     assert document is not None
     report = DocumentReport(document)
@@ -25,5 +25,5 @@ def shipped(name: str) -> Body:
 
 
 def standing(name: str, **options: Any) -> SimulatedRobot:
-    """One of them on the floor."""
+    """Return a robot with that body, on the floor."""
     return on_the_floor(shipped(name), **options)

@@ -31,7 +31,9 @@ Do = Callable[[RobotCommand], str]
 
 @pytest.fixture
 def do(robot: SimulatedRobot) -> Do:
-    """Performs a command to its end; returns the name of its answer, and the reason of an error."""
+    """Return a function that performs a command to its end; it returns the name of the answer, and the reason of an
+    error.
+    """
 
     def perform(command: RobotCommand) -> str:
         robot.start("x", command)
@@ -41,7 +43,7 @@ def do(robot: SimulatedRobot) -> Do:
 
 
 def until_answered(robot: SimulatedRobot, id: str, limit: float = 60.0) -> list[Event]:
-    """Live until that command is answered; all that happened."""
+    """Let the robot live until that command is answered, at most `limit` [s]; return all its events."""
     events: list[Event] = []
     end = robot.time + limit
     while not answer(events, id):

@@ -1,4 +1,4 @@
-"""Arenas and tasks of dm_control, which import labmaze: files of tests that import them are skipped without it."""
+"""Arenas and tasks of dm_control, which import labmaze; without it, files of tests that use them are skipped."""
 
 import sys
 

@@ -1,4 +1,4 @@
-"""NAO V5 as published (ros-naoqi nao_description, naoV50_generated_urdf): what our MJCF is held to."""
+"""NAO V5 as published (ros-naoqi nao_description, naoV50_generated_urdf): the reference of our MJCF."""
 
 # joint: (parent, origin [m], axis, lower, upper [rad], effort [N m])
 JOINTS = {

@@ -20,14 +20,14 @@ AFTER = 3.0
 """The time that a robot is observed after a push [s]."""
 
 DIRECTIONS = tuple(2 * pi * k / 10 for k in range(10))
-"""Where to [rad]: 0 is forward, pi / 2 to the robot's left."""
+"""Directions of pushes [rad]: 0 is forward, pi / 2 to the robot's left."""
 
 Doing = Callable[[SimulatedRobot], None]
 """Starts the robot's activity during the push."""
 
 
 class PushTrial(NamedTuple):
-    """A robot by its seed, pushed by that much [N s] for 0.1 s, `at` seconds after it has begun, towards `to` [rad]."""
+    """A push of `impulse` [N s] for 0.1 s towards `to` [rad], `at` seconds after the robot of that seed has begun."""
 
     seed: int
     impulse: float
@@ -36,26 +36,26 @@ class PushTrial(NamedTuple):
 
 
 def standing(robot: SimulatedRobot) -> None:
-    """It does nothing."""
+    """Let the robot stand."""
 
 
 def walking(robot: SimulatedRobot) -> None:
-    """It keeps walking at 0.1 m/s."""
+    """Let the robot walk on at 0.1 m/s."""
     robot.start("it", Move(0.1, 0.0, 0.0))
 
 
 def walking_briskly(robot: SimulatedRobot) -> None:
-    """It keeps walking at 0.2 m/s, which takes the brisk pace."""
+    """Let the robot walk on at 0.2 m/s, which takes the brisk pace."""
     robot.start("it", Move(0.2, 0.0, 0.0))
 
 
 def dancing(dance: MotionDefinition) -> Doing:
-    """It plays that motion."""
+    """Return a function that lets a robot play that motion."""
     return lambda robot: robot.start("it", Perform(dance))
 
 
 def upright(body: Body, doing: Doing, trial: PushTrial) -> bool:
-    """Whether that robot, in Stand, still stands `AFTER` seconds after its push."""
+    """Return whether that robot, in Stand, still stands `AFTER` seconds after its push."""
     robot = any_robot(body, trial.seed)
     push = Push(10 * trial.impulse, trial.at, trial.to)
     robot.advance(SETTLE)
@@ -68,7 +68,7 @@ def upright(body: Body, doing: Doing, trial: PushTrial) -> bool:
 
 
 def anywhere(count: int, impulse: float, moments: tuple[float, float]) -> Sequence[PushTrial]:
-    """Pushes towards anywhere, some time between these moments [s]; the same for the same numbers."""
+    """Return pushes in random directions, at random times between these moments [s]; equal for equal arguments."""
     draw = np.random.default_rng(7)
     drawn = [(draw.uniform(*moments), draw.uniform(0, 2 * pi)) for _ in range(count)]
     return [PushTrial(seed, impulse, to, at) for seed, (at, to) in enumerate(drawn)]

@@ -16,7 +16,7 @@ from tests.features.simulation.pushes import PushTrial, standing, upright
 from tests.features.simulation.walks import Push, any_robot, truth
 
 HARD = 3.0
-"""More than ankles, hips and arms bear from behind [N s]."""
+"""An impulse from behind that ankles, hips and arms can't balance [N s]."""
 
 
 def pushed(robot: SimulatedRobot, impulse: float, seconds: float, to: float = 0.0) -> bool:
@@ -79,7 +79,7 @@ def test_twenty_robots_catch_themselves(body: Body) -> None:
 
 
 def head_meets_the_floor(body: Body, seed: int, to: float) -> float:
-    """How fast the head is when it does [m/s], of a robot that is pushed over."""
+    """Push a robot over; return the greatest speed of its head as it reaches the floor, 0 if it does not [m/s]."""
     robot = any_robot(body, seed)
     robot.advance(0.5)
     model, data, push, begin = robot.world.model, robot.world.data, Push(60.0, 0.0, to), robot.time

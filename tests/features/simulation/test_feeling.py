@@ -73,7 +73,7 @@ def test_the_inertial_unit_knows_how_far_it_has_turned(robot: SimulatedRobot) ->
 
 
 def test_motors_that_hold_get_warm(robot: SimulatedRobot) -> None:
-    """Arms held out in front, for some seconds."""
+    """The arms are held out in front for eight seconds."""
     robot.start("p", Posture("StandZero"))
     until_answered(robot, "p")
     robot.advance(8.0)

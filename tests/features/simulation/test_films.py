@@ -1,4 +1,4 @@
-"""A film: what its camera shows, what is written into it, how far it is said to be."""
+"""A film: what its camera shows, the texts in it, and its reported progress."""
 
 from itertools import pairwise
 from math import atan2, cos, degrees, dist, hypot, radians, sin, tan
@@ -35,7 +35,7 @@ ALONE = Subjects(HEAD, TORSO, 0.0, None)
 
 
 def shown(moments: dict[float, FilmMoment], until: float, visitor: bool = True) -> list[tuple[float, Shot]]:
-    """The cuts of a film, looked at 25 times a second."""
+    """Return the cuts of a film, looked at 25 times a second."""
     director, cuts = ShotDirector(), list[tuple[float, Shot]]()
     for frame in range(round(until * 25)):
         now = frame / 25

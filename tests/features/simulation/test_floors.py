@@ -1,4 +1,4 @@
-"""Far walks, and floors that are not flat: who stays upright, how far off, and what odometry believes.
+"""Long walks, and floors that are not flat: whether robots stay upright, how far off they end, and odometry's errors.
 
 Bounds are what was measured, a little rounded up; `python benchmarks/walking.py --robots 20` prints the figures, and
 docs/decisions/074 lists the figures that miss their targets. A walk of five metres costs
@@ -16,16 +16,16 @@ from tests.features.simulation.walks import RESTED, any_robot, bump, ramp, stray
 
 
 class Way(NamedTuple):
-    """A walk over geoms `more`, how far beside its goal it may end and how far odometry may be wrong [cm].
-
-    Before the walk the robot rests for `rest` [s], in which it estimates its gyrometer's bias.
-    """
+    """A walk over the geoms `more` (MJCF), with the limits of its errors."""
 
     more: str
     target: Walk
     off: float
+    """The greatest distance from its goal at which it may end [cm]."""
     strayed: float
+    """The greatest error of odometry [cm]."""
     rest: float = 0.0
+    """The time before the walk in which the resting robot estimates its gyrometer's bias [s]."""
 
 
 WAYS = {
@@ -60,7 +60,7 @@ def test_each_of_twenty_robots_gets_there(body: Body, name: str, seed: int) -> N
 @pytest.mark.soak
 @pytest.mark.parametrize("seed", range(10))
 def test_a_robot_walks_up_across_and_down_a_slope(body: Body, seed: int) -> None:
-    """2.3 m and two turns, in which soles slide downhill: nothing feels that. Of 30 robots one ends 3.8 cm off."""
+    """Over 2.3 m with two turns, soles slide downhill, which no sensor feels. Of 30 robots one ends 3.8 cm off."""
     robot = any_robot(body, seed, more=ramp(5.0))
     for target in (Walk(1.0), Walk(0.0, 0.0, pi / 2), Walk(0.3), Walk(0.0, 0.0, pi / 2), Walk(1.0)):
         walked = walk(robot, target)

@@ -25,7 +25,7 @@ def angles(robot: SimulatedRobot) -> np.ndarray[tuple[int], np.dtype[np.float64]
 
 
 def rates(robot: SimulatedRobot, seconds: float) -> np.ndarray[tuple[int, int], np.dtype[np.float64]]:
-    """How wrong the gyrometer is in each control period [rad/s]: it tells the mean of the one before."""
+    """Return the gyrometer's error in each control period [rad/s]; it reports the mean of the period before."""
     axes = robot.world.gyro_axes
     assert axes is not None
     wrong, before = [], axes.reshape(3, 3).copy()
@@ -117,7 +117,7 @@ def test_a_gyrometer_tells_a_turn_that_the_robot_has_learned(body: Body) -> None
 
 
 def test_a_robot_that_stands_learns_how_it_changes(body: Body) -> None:
-    """An hour in which it gets warm: without learning, the heading would go by a degree each second."""
+    """The robot gets warm in an hour: without learning, the heading would drift by a degree each second."""
     warm = robot(body, only(("gyro_bias",)))
     gyrometer = warm._sensors._gyrometer
     known, changed = gyrometer._calibration.bias, 20 * np.abs(gyrometer._drift).max()

@@ -1,4 +1,4 @@
-"""The NAO for those who learn with it: a Walker, a dm_env task, a Gymnasium environment, and the shipped policy."""
+"""The NAO in machine learning: a Walker, a dm_env task, a Gymnasium environment, and the shipped policy."""
 
 import sys
 from collections.abc import Iterator
@@ -14,12 +14,12 @@ from lumen.features.simulation.entity import Nao
 from tests import ROOT
 from tests.features.simulation.locomotion import floors, go_to_target
 
-pytestmark = pytest.mark.rest  # dear
+pytestmark = pytest.mark.rest  # expensive
 
 
 @pytest.fixture(scope="module", autouse=True)
 def learning() -> Iterator[None]:
-    """The programs of the example import each other as programs do."""
+    """Let the programs of the example import each other, as they do if they are run."""
     sys.path.insert(0, str(ROOT / "examples/learning"))
     yield
     sys.path.remove(str(ROOT / "examples/learning"))

@@ -20,7 +20,7 @@ def models(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def read(body: Body, models: Path, *edits: tuple[str, str]) -> LegGeometry:
-    """The legs of the shipped robot, with these edits of its MJCF."""
+    """Return the legs of the shipped robot, with these edits of its MJCF."""
     text = (models / "nao.xml").read_text()
     for old, new in edits:
         assert old in text

@@ -1,4 +1,4 @@
-"""The lights of the simulated robot: who sets them when, and what is drawn of it."""
+"""The lights of the simulated robot: which command sets them, when, and how they are drawn."""
 
 import numpy as np
 import pytest

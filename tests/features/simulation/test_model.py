@@ -1,4 +1,4 @@
-"""The MJCF against the published robot, and its physics against cheating."""
+"""The MJCF agrees with the published robot, and nothing but its motors makes it stand."""
 
 import shutil
 from pathlib import Path
@@ -31,7 +31,7 @@ def rotation(axis: tuple[float, ...], angle: float) -> NDArray[np.float64]:
 
 
 def forward(angles: dict[str, float]) -> dict[str, tuple[NDArray[np.float64], NDArray[np.float64]]]:
-    """Place and rotation of every link in the torso's frame, by the published chain."""
+    """Return the place [m] and rotation of every link in the torso's frame, by the published chain."""
     poses = {"Torso": (np.zeros(3), np.eye(3))}
     for name, (parent, origin, axis, *_) in JOINTS.items():
         place, turn = poses[parent]
@@ -77,7 +77,9 @@ def test_links_have_the_published_mass_and_inertia(model: mujoco.MjModel, robot:
 
 
 def composed(model: mujoco.MjModel, parts: list[str]) -> tuple[float, NDArray[np.float64], NDArray[np.float64]]:
-    """Mass, centre and inertia of a link and of what hangs on it, in the link's frame; joints at zero."""
+    """Return mass, centre and inertia of a link with the links that hang on it, in the link's frame, for joints at
+    zero.
+    """
     bodies = [model.body(part) for part in parts]
     places = [np.zeros(3), *(b.pos for b in bodies[1:])]
     masses = [float(b.mass[0]) for b in bodies]
@@ -106,7 +108,7 @@ def test_a_heavier_brother_is_heavier_in_all_its_links(body: Body) -> None:
 
 
 def test_nothing_helps_the_robot_to_stand(robot: SimulatedRobot) -> None:
-    """Free torso, real gravity, no weld, no moving by hand, no force from nowhere."""
+    """The torso is free, gravity is real, and no weld and no outer force holds the robot."""
     model, data = robot.world.model, robot.world.data
     robot.advance(0.5)
     assert tuple(model.opt.gravity) == (0.0, 0.0, -9.81)

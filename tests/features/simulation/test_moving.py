@@ -1,4 +1,4 @@
-"""Walking on and on, in physics: steered under way, ended by whatever ends a walk."""
+"""Continuous walks in physics: steered on the way, and ended by each event that ends a walk."""
 
 from math import nan
 
@@ -23,12 +23,12 @@ GRACE = 0.01
 
 @pytest.fixture
 def staged(body: Body) -> SimulatedRobot:
-    """On the floor, with the podium's stage."""
+    """A robot on the floor, with the podium's stage."""
     return on_the_floor(body, stage=STAGE)
 
 
 def steered(robot: SimulatedRobot, moves: list[Move], each: float) -> None:
-    """One after another, each for so long [s]; then stand."""
+    """Give the robot each of these commands for `each` [s]; then let it stand."""
     for i, move in enumerate(moves):
         robot.start(f"m{i}", move)
         robot.advance(each)
@@ -62,7 +62,7 @@ def test_it_is_steered_to_and_fro_without_a_stop(body: Body) -> None:
 
 
 def full_speed(body: Body, seed: int, command: Move, seconds: float) -> tuple[bool, float, float, float]:
-    """Whether it stayed up, and how fast it went ahead and aside [m/s] and turned [rad/s], asked for more."""
+    """Return whether the robot stayed upright, and its speed ahead and aside [m/s] and in turning [rad/s]."""
     robot = any_robot(body, seed)
     robot.start("m", command)
     robot.advance(3.0)
@@ -117,7 +117,7 @@ def test_twenty_robots_are_steered_at_random(body: Body) -> None:
 
 
 def pushed(robot: SimulatedRobot, push: Push) -> None:
-    """A robot that moves on at 0.1 m/s for 6 s, or until it falls."""
+    """Let the robot walk at 0.1 m/s for 6 s, or until it falls, with that push."""
     robot.start("m", Move(0.1))
     begin = robot.time
     while robot.time < begin + 6.0 and not robot.fallen:

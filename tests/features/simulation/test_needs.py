@@ -19,7 +19,7 @@ def models(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def changed(models: Path, file: str, *edits: tuple[str, str]) -> str:
-    """The name of a copy of a model with these edits."""
+    """Write a copy of a model with these edits, and return its name."""
     text = (models / file).read_text()
     for old, new in edits:
         assert old in text

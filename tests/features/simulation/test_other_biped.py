@@ -18,7 +18,7 @@ ROBOTS = 20
 
 
 def walks(seed: int) -> bool:
-    """Whether a robot of other masses, on another floor, with noisy sensors walks half a metre and ends there."""
+    """Return whether a robot of other masses, on another floor, with noisy sensors walks half a metre truly."""
     walked = walk(any_robot(shipped("sprout"), seed), HALF_A_METRE)
     return walked.true and walked.upright
 

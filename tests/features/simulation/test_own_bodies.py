@@ -1,4 +1,4 @@
-"""The three bodies that are Lumen's own beside NAO, in MuJoCo alone: what they weigh, and whether they stand."""
+"""The three bodies that are Lumen's own beside NAO, in MuJoCo alone: their weights, and whether they stand."""
 
 import json
 
@@ -19,10 +19,10 @@ MODELS = ROOT / "models"
 WEIGHTS = {"greeter": (30.0, 40.0), "lantern": (1.0, 2.0), "sprout": (2.0, 3.0)}
 """Least and greatest mass [kg]."""
 HEIGHTS = {"greeter": (1.2, 1.5), "lantern": (0.3, 0.4), "sprout": (0.3, 0.42)}
-"""Of the highest point in Stand above the floor [m]."""
+"""Least and greatest height of the highest point in Stand above the floor [m]."""
 KINDS = {"greeter": "wheels", "lantern": "fixed", "sprout": "biped"}
 SETTLED, LONGER = 3.0, 10.0
-"""Simulated times [s]: when everything has come to rest, and how long it is looked at."""
+"""Simulated times [s]: until everything has come to rest, and then of observation."""
 
 SAMPLES = [
     (name, posture) for name in KINDS for posture in yaml.safe_load((MODELS / f"{name}.yaml").read_text())["postures"]
@@ -36,7 +36,7 @@ def described(name: str) -> dict:
 
 
 def posed(name: str, posture: str) -> tuple[mujoco.MjModel, mujoco.MjData]:
-    """The body on a floor in that posture, its motors told to stay; what is not fixed is free to fall."""
+    """Return the body on a floor in that posture, held by its motors; a body that is not fixed can fall."""
     spec = mujoco.MjSpec.from_file(str(MODELS / f"{name}.xml"))
     if KINDS[name] != "fixed":
         spec.worldbody.first_body().add_freejoint()
@@ -62,7 +62,7 @@ def posed(name: str, posture: str) -> tuple[mujoco.MjModel, mujoco.MjData]:
 
 
 def _lowest(model: mujoco.MjModel, data: mujoco.MjData) -> float:
-    """The height of what touches the floor first, boxes and spheres and cylinders, below the root's frame [m]."""
+    """Return the height of the lowest point that can touch the floor, relative to the root's frame [m]."""
     lowest = 0.0
     for i in np.flatnonzero(model.geom_contype):
         size, up = model.geom_size[i], np.abs(data.geom_xmat[i].reshape(3, 3)[2])

@@ -21,7 +21,7 @@ from tests.features.simulation.walks import any_robot
 RUNS = 20
 DOWN = ("Sit", "SitRelax", "LyingBack", "LyingBelly")
 TOUCHDOWN = 0.3
-"""How fast the pelvis may come to the floor [m/s]."""
+"""The greatest speed at which the pelvis may reach the floor [m/s]."""
 
 
 def told(robot: SimulatedRobot, posture: str) -> str:
@@ -35,7 +35,7 @@ def standing(robot: SimulatedRobot) -> bool:
 
 
 def load(robot: SimulatedRobot, *parts: str) -> float:
-    """The part of the weight that these bodies carry."""
+    """Return the share of the robot's weight that these links carry, from 0 on."""
     model, data, force = robot.world.model, robot.world.data, 0.0
     for i in range(data.ncon):
         names = {model.body(model.geom_bodyid[g]).name for g in data.contact[i].geom}
@@ -70,7 +70,7 @@ def test_twenty_robots_get_down_and_up_again(body: Body, posture: str) -> None:
 
 
 def shoved(robot: SimulatedRobot, angle: float) -> None:
-    """Push the torso over, in that direction [rad], until it has fallen."""
+    """Push the torso in that direction [rad] until the robot has fallen."""
     torso = robot.world.torso
     robot.world.data.xfrc_applied[torso, :2] = 60 * np.cos(angle), 60 * np.sin(angle)
     robot.advance(0.15)

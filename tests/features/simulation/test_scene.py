@@ -1,4 +1,4 @@
-"""models/scene.xml, as whoever knows mujoco_menagerie opens it: it compiles, moves without a warning, and stands."""
+"""models/scene.xml, opened as those of mujoco_menagerie are: it compiles, moves without a warning, and stands."""
 
 import mujoco
 import numpy as np

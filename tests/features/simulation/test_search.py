@@ -38,7 +38,7 @@ def test_a_passage_that_ends_elsewhere_costs_more(body: Body) -> None:
 
 @pytest.mark.soak
 def test_two_processes_find_the_costs_that_one_finds() -> None:
-    """Each of them loads the project and stands a robot up, which takes seconds."""
+    """Each process loads the project and stands a robot up, which takes seconds."""
     passage, root = (MODELS / "passages/sitrelax-straddle.yaml").read_text("utf-8"), MODELS.parent
     kit = WorkKit({"": read_files(root)}, models_in(root))
     tasks = [(text, passage, 1, 1) for text in (passage, passage.replace("at: 1", "at: 2"))]

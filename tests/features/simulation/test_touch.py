@@ -27,7 +27,7 @@ TOUCHED = {
     "LeftBumper": ("LAnkleRoll", (1, 0, 0), (0.095, 0.009, -0.03)),
     "RightBumper": ("RAnkleRoll", (1, 0, 0), (0.095, -0.009, -0.03)),
 }
-"""A link of the robot, the way out of its shell there, and a point of the shell [m]."""
+"""For each sensor: its link, the direction out of the shell there, and a point of the shell [m]."""
 
 
 @pytest.mark.parametrize("sensor", TOUCHED)

@@ -19,7 +19,7 @@ from tests.features.simulation.walks import TARGETS, Push, Walked, any_robot, on
 
 RUNS = 20
 PUSH = 20.0
-"""For 0.1 s: 2 N s."""
+"""A force [N], which for 0.1 s is a push of 2 N s."""
 
 
 def index(robot: SimulatedRobot, joint: str) -> float:
@@ -166,12 +166,12 @@ def test_a_gesture_is_kept_and_the_head_stays_free(body: Body) -> None:
 
 @pytest.fixture
 def staged(body: Body) -> SimulatedRobot:
-    """On the podium, as shipped."""
+    """The shipped robot on the podium."""
     return SimulatedRobot(body, MODELS, stage=Stage((-0.4, 0.4), (-0.6, 0.6)))
 
 
 def refused(robot: SimulatedRobot, command: Walk) -> str:
-    """The reason, of a robot that has not moved a joint."""
+    """Return the reason why the walk is refused; fail if the goal of a joint has changed."""
     goal = robot.motors.goal.copy()
     robot.start("w", command)
     result = answer(until_answered(robot, "w", 1.0), "w")

@@ -50,7 +50,7 @@ def drive(robot: SimulatedRobot, command: Walk) -> str:
 
 
 def pushed(robot: SimulatedRobot, newton_seconds: float, to: float) -> None:
-    """A push at the torso's centre for 0.1 s."""
+    """Push the torso's centre for 0.1 s towards `to` [rad]."""
     force = robot.world.data.xfrc_applied[robot.world.torso]
     force[:2] = 10 * newton_seconds * np.cos(to), 10 * newton_seconds * np.sin(to)
     force[3:5] = -0.5 * force[1], 0.5 * force[0]

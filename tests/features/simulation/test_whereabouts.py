@@ -1,4 +1,4 @@
-"""Where the robot believes to be, and what it makes of having been down."""
+"""The robot's estimate of its place, also after it was on the floor."""
 
 from math import degrees, pi
 

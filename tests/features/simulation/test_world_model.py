@@ -18,7 +18,7 @@ from tests import ROOT
 
 @pytest.fixture
 def models(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
-    """The shipped models, nothing kept yet; what this process remembers is left as it was."""
+    """A copy of the shipped models, and an empty cache; the memory of this process is restored at the end."""
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     monkeypatch.setattr(memoization, "_last", {})
     shutil.copytree(ROOT / "models", tmp_path / "models")
@@ -27,7 +27,7 @@ def models(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
 
 @pytest.fixture
 def compiled(monkeypatch: pytest.MonkeyPatch) -> list[str]:
-    """One entry for each world that is compiled."""
+    """A list with one entry for each world that is compiled."""
     done, compile_world = [], model.compile_world
 
     def counting(world: object) -> mujoco.MjModel:
@@ -39,7 +39,7 @@ def compiled(monkeypatch: pytest.MonkeyPatch) -> list[str]:
 
 
 def made(models: Path, variation: Variation | None = None) -> bytes:
-    """The bytes of the world that the next process would have."""
+    """Return the bytes of the world that a new process would get."""
     memoization._last.clear()
     found = physics(lumen.load(ROOT).body, models, "hall.xml", variation, backlash=True).model.ptr
     content = np.zeros(mujoco.mj_sizeModel(found), np.uint8)

@@ -1,4 +1,4 @@
-"""Walks on a floor with room for them, and how true they end."""
+"""Walks on a floor with room for them, and their errors at the end."""
 
 from dataclasses import dataclass
 from functools import cache
@@ -20,17 +20,17 @@ from lumen.motion.gait.legs import SIDE_ROLES
 from tests.features.simulation.conftest import MODELS, answer
 
 START = (3.0, -3.0)
-"""Where on the hall's floor these robots stand [m], with two metres around them."""
+"""The place of these robots on the hall's floor [m], with two metres around them."""
 
 TARGETS = (Walk(0.2), Walk(0.5), Walk(0.0, 0.2), Walk(0.0, 0.0, pi / 2), Walk(0.3, 0.2, pi / 4))
 SLOPE = 2.0
 """The length of a slope [m]."""
 
 LONGEST = 120.0
-"""No walk takes longer [s]."""
+"""The longest time that a walk may take [s]."""
 
 RESTED = 12.0
-"""A robot that has stood so long knows its gyrometer's bias [s]."""
+"""The time after which a standing robot knows its gyrometer's bias [s]."""
 
 NEAR, STRAIGHT = 1.5, 1.5
 """The largest allowed errors at the end of a walk: distance [cm] and direction [degrees]."""
@@ -58,7 +58,7 @@ class Walked:
 
 @cache
 def floor(more: str = "") -> str:
-    """The shipped hall, its robot on the floor; `more` geoms in it, as MJCF."""
+    """Return the path of the shipped hall, with its robot on the floor and the geoms `more` (MJCF)."""
     folder = Path(mkdtemp())
     (folder / "hall").symlink_to(MODELS / "hall")
     text = (MODELS / "hall.xml").read_text("utf-8")
@@ -73,7 +73,7 @@ def on_the_floor(body: Body, more: str = "", **options: Any) -> SimulatedRobot:
 
 
 def any_robot(body: Body, seed: int, posture: str = "Stand", more: str = "") -> SimulatedRobot:
-    """A robot whose links are up to 10 % lighter or heavier, each by its own, on a floor of friction 0.5 to 1.0."""
+    """Return a robot with links up to 10 % lighter or heavier, each by its own, on a floor of friction 0.5 to 1.0."""
     draw = np.random.default_rng(seed)
     friction = draw.uniform(0.5, 1.0) / 0.8
     robot = on_the_floor(body, more, seed=seed, posture=posture)
@@ -90,7 +90,7 @@ def any_robot(body: Body, seed: int, posture: str = "Stand", more: str = "") -> 
 
 
 def feet(robot: SimulatedRobot) -> Feet:
-    """Where both feet really stand, from where the robot began."""
+    """Return the true poses of both feet, relative to the robot's start."""
     found: dict[Side, Pose] = {}
     for side in SIDES:
         site = robot.world.data.site(f"{ROBOT_PREFIX}/{robot.body.roles.soles[SIDE_ROLES[side]]}")
@@ -105,7 +105,7 @@ def truth(robot: SimulatedRobot) -> Pose:
 
 
 def ramp(degrees: float) -> str:
-    """A slope that begins 0.3 m ahead of the robot."""
+    """Return a slope that begins 0.3 m ahead of the robot, as MJCF."""
     angle = radians(degrees)
     x, height = START[0] + 0.3 + SLOPE / 2, SLOPE / 2 * tan(angle)
     return (
@@ -115,7 +115,7 @@ def ramp(degrees: float) -> str:
 
 
 def bump(height: float) -> str:
-    """Rails of that height [m] across the robot's way, 3 cm wide, 13 cm apart."""
+    """Return rails of that height [m] across the robot's way, 3 cm wide and 13 cm apart, as MJCF."""
     return "".join(
         f'<geom class="ground" type="box" size="0.015 0.6 {height / 2}" pos="{START[0] + 0.2 + 0.13 * k} {START[1]} '
         f'{height / 2}"/>'
@@ -131,7 +131,7 @@ def strayed(robot: SimulatedRobot) -> float:
 
 @dataclass
 class Push:
-    """That many newtons for 0.1 s, `at` seconds after the walk began, towards `to` [rad]."""
+    """A push of so many newtons for 0.1 s, `at` seconds after the walk began, towards `to` [rad]."""
 
     newton: float = 0.0
     at: float = 0.0
@@ -143,7 +143,7 @@ class Push:
 
 
 def walk(robot: SimulatedRobot, command: Walk, push: Push | None = None) -> Walked:
-    """A walk to its answer, and a moment more."""
+    """Let the robot walk until the command is answered, and a moment more; return the end of the walk."""
     goal, begin = truth(robot).then(Pose(command.x, command.y, command.theta)), robot.time
     robot.start("walk", command)
     events: list[Event] = []
