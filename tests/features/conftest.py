@@ -20,7 +20,7 @@ def project() -> Project:
 
 
 def with_options(project: Project, name: str, **options: Any) -> Project:
-    """The project with these options of a module in its lumen.yaml."""
+    """Return the project with these options of a module in its lumen.yaml."""
     modules: Mapping[str, ModuleSettings] = {**project.modules, name: ModuleSettings(True, options)}
     return replace(project, modules=modules)
 
@@ -40,7 +40,7 @@ class Stand:
         return module
 
     def listen(self, key: str) -> Collector:
-        """What comes under that key from now on."""
+        """Return a collector of the messages under that key from now on."""
         collector = Collector()
         self.bus.subscribe(key, collector)
         return collector
@@ -62,7 +62,7 @@ class Stand:
 
 @pytest.fixture
 def stand(project: Project) -> Iterator[Callable[..., Stand]]:
-    """Makes stands; they are cleared away at the end."""
+    """Return a function that makes stands, which are closed after the test."""
     stands: list[Stand] = []
 
     def make(other: Project | None = None) -> Stand:

@@ -39,7 +39,7 @@ def bus(broker: RabbitMQ, project: Project) -> Iterator[Bus]:
 
 @pytest.fixture
 def brain(bus: Bus) -> Iterator[Presence]:
-    """Somebody who watches over the others, as a brain does."""
+    """The presence of a brain, which watches the other parts."""
     presence = Presence(bus, "NAO", ("brain",))
     presence.settle()
     yield presence
@@ -73,7 +73,7 @@ def start(broker: RabbitMQ, tmp_path: Path) -> Iterator[Started]:
 
 
 def here(presence: Presence, part: str) -> Peer:
-    """Wait until that part is there."""
+    """Wait until that part is there, and return it."""
     until(lambda: (presence.tick(), presence.find(part))[1] is not None and presence.find(part).state == "here")  # type: ignore[union-attr]
     found = presence.find(part)
     assert found
@@ -106,7 +106,7 @@ def test_a_module_is_announced_does_its_work_is_one_and_is_missed(
 
 
 def _again(bus: Bus, answers: Collector) -> bool:
-    """Whether an answer knows the visitor; asks once more where it does not yet."""
+    """Return whether an answer knows the visitor; if it does not yet, ask once more."""
     if not answers.bodies:
         return False
     if [visitor["name"] for visitor in answers.bodies[-1]["visitors"]] == ["Ani"]:

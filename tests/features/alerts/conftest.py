@@ -15,7 +15,7 @@ def no_settings(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.fixture
 def web() -> Iterator[Callable[..., Web]]:
-    """Makes web servers; they are closed at the end."""
+    """Return a function that makes web servers, which are closed after the test."""
     made: list[Web] = []
 
     def make(*statuses: int) -> Web:

@@ -56,7 +56,7 @@ class NearBus(MemoryBus):
     host, away, blocked = "near", False, ""
 
     def close(self) -> None:
-        """It ends with the test."""
+        """Do nothing: the bus ends with the test."""
 
 
 class Hall:
@@ -69,7 +69,7 @@ class Hall:
         self.closing: list[Callable[[], None]] = []
 
     def whole(self, *, last_good: bool = False, **behaves: str) -> Exhibition:
-        """`lumen run`, or `lumen run --last-good`."""
+        """Return an exhibition as `lumen run` makes it, or `lumen run --last-good`."""
         directory = RunDirectory(self.folder)
         if last_good:
             project = startup_project(self.folder, directory, last_good=True)
@@ -92,7 +92,7 @@ class Hall:
         return exhibition
 
     def part(self, *names: str) -> Node:
-        """`lumen run --only NAMES`."""
+        """Return a node as `lumen run --only NAMES` makes it."""
         directory = RunDirectory(self.folder, guest="brain" not in names)
         project = lumen.load(self.folder)
         clock: Clock = RealClock()
@@ -111,7 +111,7 @@ class Hall:
         return node
 
     def happen(self, name: str, **data: Any) -> None:
-        """The robot notices something."""
+        """Let the robot report an event."""
         self.robot._notice(Event(name, data, self.robot.time))
 
     def until(self, condition: Callable[[], object]) -> None:

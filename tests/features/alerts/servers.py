@@ -15,7 +15,7 @@ from tests.waiting import HANG, until
 
 
 class Web:
-    """Keep what is posted; answer with each of `statuses` once, then with 200. It refuses connections once closed."""
+    """Keeps what is posted; answers with each of `statuses` once, then with 200. It refuses connections once closed."""
 
     def __init__(self, *statuses: int) -> None:
         self.statuses, self.bodies = list(statuses), list[dict[str, Any]]()
@@ -45,7 +45,7 @@ class Web:
         threading.Thread(target=self._server.serve_forever, args=(0.02,), daemon=True).start()
 
     def told(self, kind: str, count: int = 1) -> list[dict[str, Any]]:
-        """Wait for `count` alerts of that kind."""
+        """Wait for `count` alerts of that kind, and return all of them."""
         until(lambda: len(self.of(kind)) >= count)
         return self.of(kind)
 

@@ -86,7 +86,7 @@ def test_nothing_is_lost_and_nothing_told_too_often(days: list[tuple[float, str,
 
 
 class Stand:
-    """Couriers whose deliveries are counted; each of `faults` keeps one from arriving."""
+    """Couriers whose deliveries are counted; each of `faults` makes one delivery fail."""
 
     def __init__(self) -> None:
         self.arrived: list[Alert] = []

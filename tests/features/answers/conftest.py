@@ -22,7 +22,7 @@ def project() -> Project:
 
 
 def with_model(project: Project, url: str, **options: Any) -> Project:
-    """The project with a language model at that address."""
+    """Return the project with a language model at that address."""
     options = {"model": {"url": url, "name": "fake", "key": "FAKE_KEY"}, **options}
     return replace(project, modules={**project.modules, ANSWERS: ModuleSettings(False, options)})
 
@@ -62,7 +62,7 @@ class Desk:
 
 @pytest.fixture
 def desk(project: Project, monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[..., Desk]]:
-    """Makes a desk with a model that replies so."""
+    """Return a function that makes a desk with a model that replies as given."""
     monkeypatch.setenv("FAKE_KEY", "sk-secret")
     with ExitStack() as stack:
 

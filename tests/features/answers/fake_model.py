@@ -14,7 +14,7 @@ Reply = Callable[["Handler", dict[str, Any]], None]
 
 
 class Handler(BaseHTTPRequestHandler):
-    """One request; the server's `reply` answers it."""
+    """A request, which the server's `reply` answers."""
 
     server: "FakeModel"
 
@@ -81,7 +81,7 @@ def fake_model(reply: Reply) -> Iterator[FakeModel]:
 
 
 def says(*pieces: str) -> Reply:
-    """An answer in these pieces."""
+    """Return a reply that sends an answer in these pieces."""
 
     def reply(handler: Handler, _: dict[str, Any]) -> None:
         handler.begin()
@@ -93,7 +93,7 @@ def says(*pieces: str) -> Reply:
 
 
 def calls(name: str, *arguments: Any) -> Reply:
-    """An answer that calls a tool, its arguments in these pieces."""
+    """Return a reply that calls a tool, with its arguments in these pieces."""
 
     def reply(handler: Handler, _: dict[str, Any]) -> None:
         handler.begin()

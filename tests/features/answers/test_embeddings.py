@@ -16,7 +16,7 @@ from tests.features.answers.conftest import Desk
 from tests.features.answers.fake_model import FakeModel, Handler, fake_model
 
 MEANINGS = ("height tall big size", "song sing music tune", "exit door leave way out")
-"""A model that knows three meanings, by the words of each."""
+"""The three meanings of the fake model, each with its words."""
 PASSAGES = {
     "height": Passage("height", {"en": ("how tall are you",)}, {"en": "I am small."}),
     "songs": Passage("songs", {"en": ("can you sing",)}, {"en": "I know one."}),
@@ -52,7 +52,7 @@ def with_embeddings(project: Project, url: str, **more: Any) -> Project:
 
 @pytest.fixture
 def asking(project: Project, monkeypatch: pytest.MonkeyPatch) -> Any:
-    """Make a desk that uses a server with that reply."""
+    """Return a function that makes a desk whose embeddings come from a server with that reply."""
     monkeypatch.setenv("FAKE_KEY", "sk-secret")
     opened: list[Any] = []
 

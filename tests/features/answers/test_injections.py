@@ -114,7 +114,7 @@ def says(step: Any) -> bool:
 
 
 def started(visit: Visit, first: int) -> list[Start]:
-    """The commands started from that step on; check that all others only cancel commands."""
+    """Return the commands started from that step on; check that all others only cancel commands."""
     commands = [command for step in visit.steps[first:] for command in step.commands]
     assert all(isinstance(command, Start | Cancel) for command in commands)
     return [command for command in commands if isinstance(command, Start)]

@@ -27,7 +27,7 @@ ROWS = np.array([[0.1, 0.1, 0.1], *(np.eye(3)[i] for i, each in enumerate(MEANIN
 
 
 def written(folder: Path, rows: str = "embeddings", **tensors: np.ndarray) -> Path:
-    """A folder as Model2Vec saves it: three meanings, by the words of each."""
+    """Write a folder as Model2Vec saves it, with three meanings, by the words of each; return its path."""
     folder.mkdir(parents=True)
     tokenizer = Tokenizer(WordLevel(WORDS, unk_token="?"))
     tokenizer.pre_tokenizer = Whitespace()

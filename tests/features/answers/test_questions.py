@@ -44,7 +44,7 @@ class Visit:
         self.says("fine", "offer")
 
     def passes(self, state: str, most: float = 40.0) -> None:
-        """Let time pass until the tour is in that state."""
+        """Let time pass until the tour is in that state, at most `most` [s]."""
         end = self.exhibition.now + most
         while state not in self.exhibition.configuration:
             assert self.exhibition.now < end, self.exhibition.configuration

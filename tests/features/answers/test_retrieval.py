@@ -102,7 +102,9 @@ def test_how_many_questions_without_an_answer_are_written_changes_no_share() -> 
 
 
 def test_a_choice_is_learned_as_statistics_say() -> None:
-    """The slope of the penalised likelihood is zero at what is found: by differences, on made-up questions."""
+    """At the learned weights, the slope of the penalised likelihood is zero, by finite differences on made-up
+    questions.
+    """
     draw = np.random.default_rng(3)
     features = [draw.normal(size=(4, 2)).astype(np.float32) for _ in range(30)]
     wanted = [int(each[:, 0].argmax()) if i % 3 else -1 for i, each in enumerate(features)]

@@ -20,9 +20,9 @@ ENDED = "Chromium has ended while this test used it: it crashed, or was killed"
 
 
 class DrivenBrowser:
-    """A context of its own, with one window so large [px]: no storage, cookie, cache or worker is shared with others.
+    """A browser context with one window of this size [px]; it shares no storage, cookie, cache or worker with others.
 
-    The driver keeps what `logs` names: `browser` what pages complain of, `performance` what they ask for, which costs
+    The driver keeps the `logs`: `browser` has the complaints of pages, `performance` their requests, which costs
     processor time with every message. The context ends with this process at the latest.
     """
 
@@ -38,7 +38,7 @@ class DrivenBrowser:
         self.window()
 
     def window(self) -> str:
-        """Another window of this context, which the driver looks at from now on."""
+        """Open another window of this context, which the driver uses from now on; return its handle."""
         width, height = self._size
         where = {"browserContextId": self._context, "newWindow": True, "width": width, "height": height}
         window = str(self._browser.ask("Target.createTarget", url="about:blank", **where)["targetId"])

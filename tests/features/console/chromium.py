@@ -29,7 +29,7 @@ document.activeElement?.blur();
 
 
 class Chromium:
-    """Windows of one person, who was never here before, until `close`; in English, `size` is theirs [px]."""
+    """Windows of a new user's browser in English, until `close`; each has this `size` [px]."""
 
     def __init__(self, size: tuple[int, int] = (1200, 900)) -> None:
         self._browser = DrivenBrowser(size=size, page_load_strategy="none")
@@ -66,7 +66,7 @@ class Chromium:
         return self.driver.find_elements(By.CSS_SELECTOR, selector)
 
     def text(self) -> str:
-        """The text that the page shows."""
+        """Return the text that the page shows."""
         return str(self.run("return document.body ? document.body.innerText : ''"))
 
     def shows(self, *texts: str) -> bool:
@@ -106,7 +106,7 @@ class Chromium:
         until(pressed, HANG)
 
     def said(self) -> str:
-        """The page's text about the outcome of Rest; empty if it shows none."""
+        """Return the page's text about the outcome of Rest; empty if it shows none."""
         return str(self.run(SAID))
 
     def quiet(self) -> None:

@@ -46,7 +46,7 @@ class Hosted:
             self.exhibition.tick()
 
     def send(self, route: str, body: dict[str, Any]) -> None:
-        """A message as a module would send it."""
+        """Send a message as a module would."""
         self.exhibition.send(route, body)
 
     @property
@@ -163,13 +163,13 @@ def own_broker(begun_broker: RabbitMQ) -> RabbitMQ:
 
 @pytest.fixture
 def house_on_a_broker(copy: Path, broker: RabbitMQ) -> Iterator[House]:
-    """The same in more processes, on the broker of the run."""
+    """As `house`, but in more processes, on the broker of the run."""
     yield from lived_in(House(copy, broker, speed="4"))
 
 
 @pytest.fixture
 def house_on_its_broker(copy: Path, own_broker: RabbitMQ) -> Iterator[House]:
-    """The same on a broker that a test may kill."""
+    """As `house_on_a_broker`, but on a broker that a test may kill."""
     yield from lived_in(House(copy, own_broker, speed="4"))
 
 

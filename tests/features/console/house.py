@@ -1,4 +1,4 @@
-"""An exhibition and its console as people run them, in processes of their own, and whatever may happen to them."""
+"""An exhibition and its console in processes of their own, and the faults that may happen to them."""
 
 import os
 import signal
@@ -64,18 +64,18 @@ class House:
             self.processes[name] = Guarded(line, stdin=DEVNULL, stdout=file, stderr=STDOUT)
 
     def kill(self, name: str) -> None:
-        """End one as a power cut would."""
+        """End a process as a power cut would."""
         process = self.processes.pop(name)
         with suppress(ProcessLookupError):
             os.killpg(process.pid, signal.SIGKILL)
         process.wait()
 
     def signal(self, name: str, number: int) -> None:
-        """Send one a signal, as SIGSTOP and SIGCONT for one that hangs."""
+        """Send a process a signal: SIGSTOP lets it hang, and SIGCONT lets it continue."""
         os.killpg(self.processes[name].pid, number)
 
     def listens(self) -> bool:
-        """Whether the console answers at all."""
+        """Return whether the console answers at all."""
         with suppress(OSError, ValueError):
             return self.browser.get("/api/now").status == 200
         return False
@@ -90,7 +90,7 @@ class House:
         self.await_page()
 
     def stopped_by(self) -> str | None:
-        """The source of the stop, as the robot reports it; empty if it is not stopped, None if it does not answer."""
+        """Return the source of the stop, as the robot reports it; empty without a stop, None without an answer."""
         answer = self.ask_robot("stopped")
         return answer["stopped_by"] if isinstance(answer, dict) else None
 
@@ -120,7 +120,7 @@ class House:
             self.wire.close()
 
     def _reached(self) -> Reached:
-        """A bus of our own, not over the console or its wire."""
+        """Return a bus of the test itself, which uses neither the console nor its wire."""
         if self._held is None:
             self._held = reach_exhibition(str(self.folder), self.broker.url if self.broker else None)
         return self._held

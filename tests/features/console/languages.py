@@ -1,4 +1,4 @@
-"""Texts of the console in its languages, and English that a page in Indonesian shows."""
+"""Texts of the console in its languages, and a search for English text on an Indonesian page."""
 
 import re
 
@@ -27,18 +27,18 @@ QUOTED = re.compile(r"“[^”]*”|\S*[._|/=]\S*|→ \S+")
 
 
 def texts(code: str) -> dict[str, str]:
-    """The texts of the pages in a language, by their names."""
+    """Return the texts of the pages in a language, by their names."""
     source = (TEXTS / f"{code}.js").read_text("utf-8")
     return dict(re.findall(r'"([\w. -]+)": "((?:[^"\\]|\\.)*)"', source))
 
 
 def phrases() -> list[tuple[str, str]]:
-    """The sentences of the console and the engine that have Indonesian."""
+    """Return the sentences of the console and the engine, each with its Indonesian."""
     return re.findall(r'\["((?:[^"\\]|\\.)*)",\s+"((?:[^"\\]|\\.)*)"\]', (TEXTS / "phrases_id.js").read_text("utf-8"))
 
 
 def english_on(viewer: Viewer) -> list[str]:
-    """The texts of the page that are English: a text of the English pages, or one with common English words."""
+    """Return the English texts of the page: each is a text of the English pages, or has common English words."""
     english, indonesian = {*texts("en").values()}, {*texts("id").values()}
     shown = map(str, viewer.run(SHOWN))
     return [text for text in shown if text in english - indonesian or ENGLISH_WORDS.search(QUOTED.sub("", text))]

@@ -28,7 +28,7 @@ class Answer(NamedTuple):
 
 
 class Browser:
-    """Asks the console at an address."""
+    """A client of the console at an address."""
 
     def __init__(self, address: str) -> None:
         parts = urlsplit(address)
@@ -69,7 +69,7 @@ class Event(NamedTuple):
 
 
 class Stream:
-    """Listens on a thread; `events` are those that have come so far."""
+    """Receives server-sent events on a thread; `events` are those received so far."""
 
     def __init__(self, browser: Browser, path: str = "/api/events", **headers: str) -> None:
         self._connection = http.client.HTTPConnection(browser.host, browser.port, timeout=HANG)

@@ -33,7 +33,7 @@ import("/pages/live.js").then(({ live, listen }) => {
 
 
 class Speaker:
-    """A voice that the robot receives again and again until `close`, and ignores."""
+    """A thread that sends the robot a voice, which it ignores, again and again until `close`."""
 
     def __init__(self, house: House) -> None:
         self._house, self._ending = house, Event()
@@ -74,7 +74,7 @@ class Window:
         return str(self.run("return live.state"))
 
     def time_of(self, number: int) -> float:
-        """The time when the page received the entry of that number [s since 1970]."""
+        """Return the time when the page received the entry of that number [s since 1970]."""
         return float(self.run(f"return times[{number}]"))
 
 
@@ -91,7 +91,7 @@ def house(begun_house: House) -> House:
 
 
 def journaled(house: House, first: int, last: int) -> list[int]:
-    """The positions in the journal from `first` to `last`, both included."""
+    """Return the positions in the journal from `first` to `last`, both included."""
     found: list[int] = []
     while not found or found[-1] < last:
         page = house.ask_brain({"ask": "journal", "from": found[-1] + 1 if found else first})
@@ -102,7 +102,7 @@ def journaled(house: House, first: int, last: int) -> list[int]:
 
 
 def away(house: House, chromium: Chromium, what: str, seconds: float, leave: Callable[[], object], back: Any) -> None:
-    """Two pages are away and come back, while events happen; both have all entries, once and in order."""
+    """Take two pages away and back while events happen; check that both have all entries, once and in order."""
     handles = (str(chromium.driver.current_window_handle), chromium.window())
     speaker = Speaker(house)
     try:

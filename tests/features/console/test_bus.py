@@ -15,7 +15,7 @@ from tests.waiting import until
 
 
 def whole(positions: list[str]) -> bool:
-    """Whether the positions have no gap and no duplicate."""
+    """Return whether the positions have no gap and no duplicate."""
     numbers = [int(position) for position in positions]
     return numbers == list(range(numbers[0], numbers[0] + len(numbers)))
 

@@ -1,4 +1,4 @@
-"""The robot's camera: only the newest image, only while a page shows it, and only pictures."""
+"""The console passes on only the newest image of a camera, only pictures, and only while a page shows it."""
 
 import base64
 import http.client

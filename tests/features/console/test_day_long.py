@@ -74,7 +74,7 @@ def busy_house(eager: Path) -> Iterator[House]:
 
 
 def size(house: House) -> tuple[float, int, int]:
-    """Memory [MB], threads and handles of the console."""
+    """Return the memory [MB] and the numbers of threads and handles of the console."""
     process = Path(f"/proc/{house.processes[CONSOLE].pid}")
     status = dict(line.split(":\t", 1) for line in (process / "status").read_text().splitlines() if ":\t" in line)
     return int(status["VmRSS"].split()[0]) / 1024, int(status["Threads"]), len(os.listdir(process / "fd"))
@@ -135,7 +135,7 @@ def shows(chromium: Chromium, page: str) -> bool:
 
 
 def caught_up(house: House, pages: Sequence[Stream]) -> bool:
-    """Whether all these pages have the newest entry."""
+    """Return whether all these pages have the newest entry."""
     last = position(house)
     return all(page.of("entry") and page.of("entry")[-1].data["position"] >= last for page in pages)
 

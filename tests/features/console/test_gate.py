@@ -212,7 +212,7 @@ def test_wrong_pins_behind_a_proxy_cost_time_only_where_they_came_from(behind: B
 
 
 def test_nobody_but_a_trusted_proxy_is_believed(alone: Browser) -> None:
-    """Else whoever guesses PINs would send each from another address."""
+    """Otherwise a guesser of PINs could claim another address for each guess."""
     statuses = [signs_in(alone, "wrong", X_Forwarded_For=f"203.0.113.{n}") for n in range(4)]
     assert statuses == [401, 401, 401, 429]
     cookie = alone.post("/api/session", {"pin": "show-1"}, X_Forwarded_Proto="https").headers.get("set-cookie", "")

@@ -169,7 +169,7 @@ SCENES: tuple[Callable[[House, Operator], None], ...] = (
 
 
 def begin(house: House, operator: Operator) -> None:
-    """A visitor comes, stays, and gives their name at each request, since a busy machine may miss the first one."""
+    """Let a visitor come, stay, and give a name at each request, since a busy machine may miss the first one."""
     operator.looks_at()
 
     def introduced() -> bool:

@@ -153,13 +153,13 @@ def test_the_console_itself_has_neither_the_simulator_nor_numbers_in_it() -> Non
 def test_poses_follow_the_joints_and_their_process_ends_with_the_looking(
     served: Served, hosted: Hosted, browser: Browser, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The head is turned by as much as its joint on the bus says; what is about no joint is passed over."""
+    """The pose turns the head by the angle of its joint on the bus; a message without joints is ignored."""
     monkeypatch.setattr("lumen.features.console.poses.LINGER", 0.1)
     poses, bus = served.console.site.sights.poses("NAO"), hosted.exhibition.node.bus
     names = list(lumen.load(hosted.root).body.joints)
 
     def turned(angle: float) -> bool:
-        """Whether the last pose has the head at that angle [rad] about z, by its quaternion w, i, j, k."""
+        """Return whether the last pose has the head at that angle [rad] about z, by its quaternion w, i, j, k."""
         bus.publish(JOINTS, {"name": [], "angle": [], "stiffness": []})
         angles = [angle if name == "HeadYaw" else 0.0 for name in names]
         bus.publish(JOINTS, {"name": names, "angle": angles, "stiffness": [1.0] * len(names)})

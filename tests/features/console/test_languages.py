@@ -38,7 +38,7 @@ PLACES = r"\{(\w+)"
 
 
 def messages(module: Path) -> Iterator[str]:
-    """The reasons that a module gives: sentences without a capital letter; a value is `…`."""
+    """Yield the reasons that a module gives: sentences without a capital letter; a value is `…`."""
     tree = ast.parse(module.read_text("utf-8"))
     documented = {id(node.value) for node in ast.walk(tree) if isinstance(node, ast.Expr)}
     inner = {id(part) for node in ast.walk(tree) if isinstance(node, ast.JoinedStr) for part in node.values}

@@ -71,7 +71,7 @@ def mine(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Hosted]:
 
 @pytest.fixture(scope="module")
 def console(mine: Hosted) -> Iterator[str]:
-    """Its address; it wants PINs."""
+    """The address of a console that requires PINs."""
     served = Served(mine.root, pins=PINS)
     yield served.console.address
     served.close()

@@ -15,7 +15,7 @@ STRING = re.compile(r'"(?:[^"\\]|\\.)*"')
 
 
 def sources(*endings: str) -> Iterator[Path]:
-    """The files of our own with one of these endings."""
+    """Yield our own files with one of these endings."""
     for file in sorted(PAGES.rglob("*")):
         if file.suffix in endings and OTHERS not in file.parents:
             yield file

@@ -126,7 +126,7 @@ def test_a_page_is_live_again_with_each_entry_once(viewer: Viewer, served: Serve
 
 
 def positions(viewer: Viewer) -> list[int]:
-    """The positions of the entries that the page has received."""
+    """Return the positions of the entries that the page has received."""
     return [int(entry["position"]) for entry in entries(viewer)]
 
 

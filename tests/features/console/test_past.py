@@ -15,7 +15,7 @@ from tests.waiting import until
 
 @pytest.fixture(scope="module")
 def browser(shared: Shared) -> Browser:
-    """A visit whose visitor has a script as a name, and says a spreadsheet formula."""
+    """A console after a visit whose visitor had a script as a name, and said a spreadsheet formula."""
     hosted, browser = shared.hosted(), shared.served().browser
     position = browser.robots[0]["position"]
     hosted.send("face", {"x": 160, "y": 120})

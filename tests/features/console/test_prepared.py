@@ -1,4 +1,4 @@
-"""Sentences that operators keep for the robot to say: of the project, in the language in which they are said."""
+"""Sentences that operators store for the robot to say: of a project, each in its language."""
 
 from contextlib import closing
 from pathlib import Path

@@ -46,7 +46,7 @@ TOOK = "return document.querySelector('rest-button[main]')?.told?.[1]?.seconds ?
 
 
 class Desk:
-    """A person at a few windows of one console, who presses Rest, and what came of it."""
+    """A person who presses Rest in a few windows of one console, with the outcomes."""
 
     def __init__(self, house: House, chromium: Chromium, draw: Random) -> None:
         self.house, self.draw, self.chromium = house, draw, chromium
@@ -96,7 +96,7 @@ class Desk:
             self.chromium.open(house.address + draw.choice(PAGES))
 
     def read(self, trouble: Trouble) -> str:
-        """The Rest notice of the page that was left; empty in any other trouble."""
+        """Return the Rest notice of the page that was left; empty in any other trouble."""
         return str(self.chromium.run(READ)) if trouble is LEAVING else ""
 
     def hear(self, trouble: Trouble, window: str) -> str:
@@ -146,7 +146,7 @@ def draw() -> Random:
 
 
 def pressed(house: House, chromium: Chromium, draw: Random, troubles: tuple[Trouble, ...], presses: int) -> Desk:
-    """Live through so many moments, print what came of them, and fail for each that was silent."""
+    """Press Rest at least `presses` times in troubles, print the outcomes, and fail for each press without one."""
     desk = Desk(house, chromium, draw)
     lived = Counter[str]()
     for trouble in drawn(troubles, draw, presses):

@@ -41,7 +41,7 @@ HALL = {
 
 
 def entries(machine: MachineDefinition, *texts: str) -> Iterator[RecordedEntry]:
-    """The journal of a visitor who says these."""
+    """Yield the journal of a visitor who says these texts."""
     begun = initial(machine, language="en").snapshot
     yield JournalJump(0, "start", 0.0, "hash", "guide", json.loads(json.dumps(serialize(machine, begun))))
     for position, text in enumerate(texts, 1):
@@ -53,7 +53,7 @@ def day(machine: MachineDefinition, *texts: str) -> Day:
 
 
 def numbers(found: Day) -> Any:
-    """The numbers of the page, from JSON."""
+    """Return the numbers of the page, from JSON."""
     return json.loads(orjson.dumps(found.to_json()))["numbers"]
 
 

@@ -115,7 +115,9 @@ def test_the_chart_is_drawn_with_the_active_states(viewer: Viewer, own: tuple[Ho
 
 
 def test_the_page_begins_with_the_situation_in_a_sentence(viewer: Viewer, own: tuple[Hosted, Served]) -> None:
-    """The deed, for whom, since when, and how long it still takes; then the words, and how sure the ears were."""
+    """It names the action, the visitor, the duration and the remaining time; then the words, and how sure the ears
+    were.
+    """
     hosted, served = own
     viewer.open(served.console.address, "robot/NAO", ready=".leaf")
     viewer.shows("Waits, 0:", ".situation")

@@ -58,7 +58,7 @@ class Foreign(BaseHTTPRequestHandler):
 
 @pytest.fixture
 def foreign() -> Iterator[int]:
-    """The port of a server of pages that are not ours."""
+    """The port of a server with foreign pages."""
     with ThreadingHTTPServer(("127.0.0.1", 0), Foreign) as server:
         thread = Thread(target=server.serve_forever)
         thread.start()
@@ -69,7 +69,7 @@ def foreign() -> Iterator[int]:
 
 @pytest.fixture
 def locked(hosted: Hosted) -> Iterator[Browser]:
-    """A console that wants a PIN."""
+    """A console that requires a PIN."""
     served = Served(hosted.root, pins={Role.OPERATOR: PIN})
     until(lambda: any(robot["connected"] for robot in served.browser.robots))
     yield served.browser
@@ -132,7 +132,7 @@ def test_a_visitor_called_like_a_script_is_a_name_on_every_page(
 
 
 def test_a_thousand_tries_in_a_row_get_nobody_in_and_rest_goes_on(locked: Browser, hosted: Hosted) -> None:
-    """From one address and from many: the PIN is among what is tried."""
+    """The tries come from many addresses, and one of them has the right PIN."""
     statuses = [tried(locked, number, f"127.0.{number % 4}.{1 + number % 250}") for number in range(1_000)]
     looked_at = sum(status == 401 for status in statuses)
     assert set(statuses) == {401, 429}
@@ -142,7 +142,7 @@ def test_a_thousand_tries_in_a_row_get_nobody_in_and_rest_goes_on(locked: Browse
 
 
 def test_show_presses_what_is_there_and_breaks_nothing(hosted: Hosted) -> None:
-    """All commands and paths that are not for that role are refused, also with what would be right for another."""
+    """The role is refused all commands and paths of other roles, even if their content is valid."""
     served = Served(hosted.root, pins={Role.SHOW: PIN, Role.AUTHOR: f"{PIN}-author"})
     browser, show = served.browser, {"Authorization": f"Bearer {PIN}"}
     try:

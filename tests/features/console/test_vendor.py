@@ -27,7 +27,7 @@ def test_all_that_is_carried_is_said() -> None:
 
 
 def test_pages_ask_nobody_else_and_write_nothing_inline() -> None:
-    """Other hosts, inline scripts and styles, and markup made of text stand nowhere."""
+    """The pages contain no other hosts, inline scripts or styles, or markup made from text."""
     refused = (
         "https://",
         "http://",

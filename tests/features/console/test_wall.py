@@ -1,4 +1,4 @@
-"""Three robots on one broker: a wall of them, where each has its Rest."""
+"""The wall of three robots on one broker, each with its own Rest."""
 
 from collections.abc import Iterator
 from contextlib import ExitStack

@@ -142,7 +142,7 @@ def test_a_report_from_before_a_press_hides_nothing(served: Served, hosted: Host
 def test_an_alarm_is_corrected_though_the_robot_reports_nothing_new(
     served: Served, hosted: Hosted, chromium: Chromium
 ) -> None:
-    """A console that answers late, of a robot whose report that it rests is there already."""
+    """The console answers late, after the robot has reported that it rests."""
     chromium.open(served.console.address)
     chromium.rest()
     until(lambda: "Rests" in chromium.said(), HANG)
@@ -151,12 +151,12 @@ def test_an_alarm_is_corrected_though_the_robot_reports_nothing_new(
 
 
 def _commands(served: Served) -> list[dict[str, str]]:
-    """The commands that were sent, as pages are told."""
+    """Return the commands that were sent, in the form that pages receive."""
     blocks = [block.partition(b"data: ")[2] for _, block in served.console.site.streams.commands]
     return [said for said in map(json.loads, blocks) if said["state"] == "sent"]
 
 
 def _last(chromium: Chromium) -> int:
-    """The position of the last entry of a page that is live."""
+    """Return the position of the page's last entry, -1 if the page is not live."""
     state, position = chromium.driver.execute_async_script(LAST)
     return int(position) if state == "live" else -1

@@ -28,7 +28,7 @@ class Trouble(NamedTuple):
 
 
 def save(house: House) -> None:
-    """Another sentence, saved."""
+    """Save the tour with another sentence."""
     tour = house.folder / "behaviors" / "tour.yaml"
     text = tour.read_text("utf-8")
     tour.write_text(text.replace(SORRY, PARDON) if SORRY in text else text.replace(PARDON, SORRY), "utf-8")

@@ -20,8 +20,8 @@ PRESSES = "return document.querySelector('rest-button[main]').presses"
 class Viewer:
     """A window of the browser; `open` begins a page as a first visitor sees it.
 
-    It keeps what pages complain of; an `overhearing` one what they ask for, too, which is dear. Before each page the
-    script `first` runs.
+    It keeps the complaints of pages; an `overhearing` one also keeps their requests, which costs processor time. The
+    script `first` runs before each page.
     """
 
     def __init__(self, *, overhearing: bool = False, first: str = "") -> None:
@@ -32,7 +32,7 @@ class Viewer:
         self._before = ""
 
     def open(self, address: str, path: str = "", *, ready: str = "main h1", width: int = 1400, **kept: str) -> None:
-        """Open a page and wait until it shows `ready`; `kept` is what it remembers from before, as `theme="dark"`."""
+        """Open a page and wait until it shows `ready`; `kept` is what it stored earlier, as `theme="dark"`."""
         self._address = address
         # The last page may still send requests to its console. An empty page that it opens itself keeps its process.
         self.run("location.replace('about:blank')")
@@ -58,7 +58,7 @@ class Viewer:
         self.command("Emulation.setDeviceMetricsOverride", metrics)
 
     def command(self, name: str, fields: dict[str, Any]) -> Any:
-        """One of the protocol of its developer tools."""
+        """Send a command of the protocol of its developer tools, and return the result."""
         return self.driver.execute("executeCdpCommand", {"cmd": name, "params": fields})["value"]
 
     def run(self, script: str, *arguments: Any) -> Any:
@@ -68,7 +68,7 @@ class Viewer:
         return self.driver.find_elements(By.CSS_SELECTOR, selector)
 
     def text(self, selector: str) -> str:
-        """The text of the visible elements that match, read in one step since the page may redraw them."""
+        """Return the text of the visible elements that match, read in one step since the page may redraw them."""
         seen = "[...document.querySelectorAll(arguments[0])].filter(e => e.checkVisibility())"
         return str(self.run(f"return {seen}.map(e => e.innerText).join('\\n')", selector))
 
@@ -77,7 +77,7 @@ class Viewer:
         until(lambda: text in self.text(selector), HANG)
 
     def click(self, selector: str) -> None:
-        """Click the first of them, wherever it has been drawn by now."""
+        """Click the first match; retry while the page draws it anew."""
 
         def clicked() -> bool:
             with suppress(WebDriverException, IndexError):
@@ -101,13 +101,13 @@ class Viewer:
         until(pressed, HANG)
 
     def complaints(self) -> list[str]:
-        """The warnings and errors in the browser's log, without those of other tests' pages."""
+        """Return the warnings and errors in the browser's log, without those of other tests' pages."""
         said = [entry["message"] for entry in self.log("browser") if entry["level"] in ("SEVERE", "WARNING")]
         others = ("http://127.0.0.1:", f"http://{EVIL}:")  # pages of other tests in this browser
         return [one for one in said if one.startswith(self._address) or not one.startswith(others)]
 
     def requests(self) -> list[str]:
-        """The addresses that the page has requested since the last call."""
+        """Return the addresses that the page has requested since the last call."""
         said = [json.loads(entry["message"]) for entry in self.log("performance")]
         own = [one["message"] for one in said if one["webview"] == self.driver.current_window_handle]
         return [str(m["params"]["request"]["url"]) for m in own if m["method"] == "Network.requestWillBeSent"]

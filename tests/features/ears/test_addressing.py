@@ -116,7 +116,7 @@ def test_a_saved_setting_counts_at_once(ear: Ear) -> None:
 
 @for_each("seed", range(20))
 def test_is_open_where_a_face_or_a_touch_is_near_in_time(seed: int) -> None:
-    """Against every moment looked at by itself."""
+    """The state agrees with a search of all events for each moment."""
     chance = random.Random(seed)
     addressing = Addressing({"face": {"after": 2.0}, "touch": {"after": 5.0}}, lambda _: None)
     seen: list[tuple[float, float]] = []

@@ -1,4 +1,4 @@
-"""Speech recognition: recordings that hold words, and what is no sound at all."""
+"""Speech recognition: recordings that hold words, and bodies that are not sounds."""
 
 import base64
 import ctypes
@@ -142,7 +142,7 @@ def test_another_rate_lasts_as_long() -> None:
 
 
 def active(project: Project, name: str) -> list[str]:
-    """The names of the active states while the tour is in that state of its guide, as the brain publishes them."""
+    """Return the names of the active states that the brain publishes while the tour's guide is in that state."""
     state = next(state for state in project.machine.states.values() if state.name == name)
     names = ["safety", "watching", "touch", "touch.free", "face", "unwatched", "language"]
     while state.path:
@@ -200,7 +200,7 @@ def test_a_sound_is_recognised_alike_after_any_others(sphinx: Sphinx, speak: Spe
 
 
 def meaning(project: Project, state: str, text: str) -> tuple[str, dict[str, Any]]:
-    """The row of `hears` that a sentence takes in a state of the tour, and what is caught."""
+    """Return the row of `hears` that a sentence takes in a state of the tour, and the words in its slots."""
     machine = project.machine
     taken = explained(machine, path_of(machine, state), text, first_context(machine)).taken
     assert taken
@@ -228,7 +228,7 @@ def test_words_that_were_spoken_are_recognised_on_the_bus(stand: Make, sphinx: S
 
 
 class Doubter(Parrot):
-    """Knows what else may have been said."""
+    """A recogniser that also reports other texts that may have been said."""
 
     def hypotheses(self, sound: Sound) -> Sequence[Hypothesis]:
         return [Hypothesis("can you thing", 0.41234), Hypothesis("can you sing"), Hypothesis("can you ring", 0.1)]
@@ -296,7 +296,7 @@ def test_the_language_models_used_last_are_kept(sphinx: Sphinx, monkeypatch: pyt
 
 
 def chances(model: str) -> tuple[dict[str, float], dict[str, float], dict[tuple[str, str], float]]:
-    """Words with their chances, words with the weight of what never followed them, and pairs with their chances."""
+    """Return the probabilities of words, the backoff weights of words, and the probabilities of pairs of words."""
     first, _, second = model.partition("\\2-grams:")
     ones = [line.split() for line in first.partition("\\1-grams:")[2].split("\n") if line]
     twos = [line.split() for line in second.partition("\\end")[0].split("\n") if line]

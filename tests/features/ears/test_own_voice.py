@@ -22,7 +22,7 @@ SAY = {"verb": "say", "id": "d1", "text": "Please stop at the organ."}
 
 
 class Writer:
-    """A recogniser that knows who spoke by how loud: 1 is the robot, from 2 on the words of a visitor."""
+    """A recogniser that tells speakers apart by loudness: 1 is the robot, and from 2 on the words of a visitor."""
 
     languages = ("en", "id")
     words = ("", "the robot's own words", "wait a moment", "stop", "can you dance")
@@ -35,7 +35,7 @@ class Writer:
 
 
 class Ear:
-    """Ears at a time of one's own, and what they heard."""
+    """Ears with a clock that the test sets, and the texts that they recognised."""
 
     def __init__(self, stand: Stand, recogniser: Recogniser | None = None) -> None:
         self.stand, self.now = stand, 100.0
@@ -51,7 +51,7 @@ class Ear:
         self.send(at, STATE, {"robot": "NAO", "time": at, **body})
 
     def record(self, at: float, *levels: int) -> list[str]:
-        """A sound of half a second for each level, that ends now; what they heard in it."""
+        """Send a sound with half a second of each level, which ends at `at` [s]; return the texts recognised in it."""
         before = len(self.collector.bodies)
         samples = np.repeat(np.array(levels, "<i2"), RATE // 2).tobytes()
         self.send(at, RECORDING, {"name": "r", "content": Sound(RATE, samples).text()})

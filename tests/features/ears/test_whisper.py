@@ -1,4 +1,4 @@
-"""Whisper from a folder: by an engine that is made up, and by folders that hold no model."""
+"""Whisper from a folder: with a fake engine, and with folders that hold no model."""
 
 import sys
 from collections.abc import Callable

@@ -66,12 +66,12 @@ class Client:
         self.notify("textDocument/didChange", textDocument=document, contentChanges=[{"text": text}])
 
     def ask(self, method: str, file: str, line: int, character: int, **more: Any) -> Any:
-        """A request about a position, both from 0."""
+        """Send a request about a line and a character, both from 0, and return its result."""
         position = {"line": line, "character": character}
         return self.request(f"textDocument/{method}", textDocument={"uri": self.uri(file)}, position=position, **more)
 
     def diagnostics(self, file: str) -> list[dict[str, Any]]:
-        """The next findings that are published for a file."""
+        """Wait for the next findings that are published for a file, and return them."""
         while True:
             params = self._take(lambda m: m.get("method") == "textDocument/publishDiagnostics")["params"]
             if params["uri"] == self.uri(file):

@@ -16,7 +16,7 @@ TOUR, VISITOR = "behaviors/tour.yaml", "behaviors/stories/visitor.yaml"
 
 
 def line_of(file: str, text: str) -> int:
-    """The first line that begins with this text, blanks included."""
+    """Return the number of the first line that begins with this text, blanks included."""
     return next(i for i, row in enumerate(SHIPPED.text(file).split("\n"), 1) if row.startswith(text))
 
 

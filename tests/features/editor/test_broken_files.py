@@ -1,4 +1,4 @@
-"""A file that is no YAML for a moment: everything else in it, and in other files, is still known."""
+"""While a file is not YAML, everything else in it and in other files is still known."""
 
 import pytest
 
@@ -48,7 +48,7 @@ def count(found: tuple[Symbol, ...]) -> int:
 
 @for_each("how", BREAKS)
 def test_the_rest_of_the_file_is_known(how: str) -> None:
-    """Nearly all symbols, hover above and below the fault, completion in the file and in a story of it."""
+    """The editor still has nearly all symbols, hover above and below the fault, and completion."""
     analysis = broken(how, before=None)
     assert count(symbols(analysis, TOUR)) > 0.9 * count(symbols(SOUND, TOUR))
     assert "atomic state" in hover(analysis, *at(analysis, TOUR, "      idle|:  "))

@@ -23,7 +23,7 @@ TEXT = "{{ hello('Budi', hour()) }}"
 
 
 def edited(text: str) -> Analysis:
-    """The project whose greeting is this text."""
+    """Return the project whose greeting is this text."""
     before = FILES[BEHAVIOR].decode()
     line = next(line for line in before.splitlines() if line.lstrip().startswith("do: {say:"))
     indent = line[: len(line) - len(line.lstrip())]
@@ -32,7 +32,7 @@ def edited(text: str) -> Analysis:
 
 
 def at(analysis: Analysis, file: str, text: str) -> tuple[str, int, int]:
-    """The place behind a piece of a file's text."""
+    """Return the place behind a piece of a file's text."""
     whole = analysis.text(file)
     offset = whole.index(text) + len(text)
     return file, whole.count("\n", 0, offset) + 1, offset - whole.rfind("\n", 0, offset)

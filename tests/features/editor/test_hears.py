@@ -69,14 +69,14 @@ PROJECT = Analysis(Path("/nowhere"), FILES)
 
 
 def place(analysis: Analysis, file: str, text: str) -> tuple[str, int, int]:
-    """The place of the `¦` in a piece of the file's text."""
+    """Return the place of the `¦` in a piece of the file's text."""
     whole = analysis.text(file)
     at = whole.index(text.replace("¦", "")) + text.index("¦")
     return file, whole.count("\n", 0, at) + 1, at - whole.rfind("\n", 0, at)
 
 
 def written(file: str, old: str, new: str) -> tuple[Analysis, tuple[str, int, int]]:
-    """The project with `new` in place of `old`, and the place of the `¦` in it."""
+    """Return the project with `new` in place of `old`, and the place of the `¦` in it."""
     text = PROJECT.text(file)
     assert text.count(old) >= 1
     at = text.index(old) + new.index("¦")

@@ -17,7 +17,7 @@ from tests.waiting import HANG
 
 
 class Outdatable:
-    """A process that answers a question once it is sent that it is outdated."""
+    """A process that answers a question only after the message that the question is outdated."""
 
     def __init__(self) -> None:
         self.asked, self.outdated = list[int](), list[int]()

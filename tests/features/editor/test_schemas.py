@@ -65,7 +65,7 @@ def editor(project: Path) -> Iterator[Client]:
 
 
 def place(text: str, offset: int) -> tuple[int, int]:
-    """Line and character, from 0."""
+    """Return the line and the character of an offset, from 0."""
     return text.count("\n", 0, offset), offset - text.rfind("\n", 0, offset) - 1
 
 

@@ -34,7 +34,7 @@ def client(project: Path) -> Iterator[Client]:
 
 
 def at(text: str, piece: str) -> tuple[int, int]:
-    """Line and character, from 0 and in UTF-16, of the `|` in a piece of a text."""
+    """Return the line and the character, from 0 and in UTF-16, of the `|` in a piece of a text."""
     offset = text.index(piece.replace("|", "")) + piece.index("|")
     line = text.count("\n", 0, offset)
     return line, units(text[text.rfind("\n", 0, offset) + 1 : offset])

@@ -37,7 +37,7 @@ SHIPPED = Analysis(ROOT, {**FILES, TOUR: FILES[TOUR].replace(b"\non:\n", f"\non:
 
 
 def place(analysis: Analysis, file: str, text: str, offset: int | None = None) -> tuple[str, int, int]:
-    """The place of the `|` in a piece of the file's text, the first one or that at an offset."""
+    """Return the place of the `|` in a piece of the file's text, the first one or that at an offset."""
     whole = analysis.text(file)
     at = whole.index(text.replace("|", "", 1)) if offset is None else offset
     at += text.index("|")
@@ -45,7 +45,7 @@ def place(analysis: Analysis, file: str, text: str, offset: int | None = None) -
 
 
 def written(file: str, old: str, new: str) -> tuple[Analysis, tuple[str, int, int]]:
-    """The shipped project with `new` in place of `old`, and the place of the `|` in it."""
+    """Return the shipped project with `new` in place of `old`, and the place of the `|` in it."""
     text = SHIPPED.text(file)
     analysis = SHIPPED.changed(file, text.replace(old, new.replace("|", "", 1), 1))
     return analysis, place(analysis, file, new, text.index(old))
@@ -91,7 +91,7 @@ def written(file: str, old: str, new: str) -> tuple[Analysis, tuple[str, int, in
     ],
 )  # fmt: skip
 def test_completion(file: str, old: str, new: str, some: list[str], none: list[str]) -> None:
-    """Also in a file that is no YAML while it is being written."""
+    """A file that is not YAML while it is being written is completed, too."""
     analysis, here = written(file, old, new)
     proposed = [item.text for item in complete(analysis, *here)]
     assert set(some) <= set(proposed), proposed
@@ -146,7 +146,7 @@ def test_hover(file: str, text: str, said: str) -> None:
 
 
 def first(behavior: str, rows: str = "") -> tuple[Analysis, tuple[str, int, int]]:
-    """A project without routes but for these rows, and the place of the `|` in its behaviour."""
+    """Return a project without routes but for these rows, and the place of the `|` in its behaviour."""
     main = f"behavior: host\nlanguages: [en]\nrobot: {{model: nao}}\nhall: hall.xml\n{rows}"
     texts = {"lumen.yaml": main, HOST: behavior.replace("|", "", 1)}
     analysis = Analysis(ROOT, {file: text.encode() for file, text in texts.items()})
@@ -211,7 +211,7 @@ def test_rename(file: str, text: str, name: str, edits: int, moved: tuple[str, s
 
 
 def test_the_key_in_a_way_that_assign_goes() -> None:
-    """Its definition is the context's, and a rename leaves the rest of the way as it is."""
+    """Its definition is the context's, and a rename leaves the rest of the path as it is."""
     analysis, here = written(TOUR, "{posture: Stand}", "{assign: {visi|tor.name: 1}}")
     (found,) = definitions(analysis, *here)
     assert analysis.text(TOUR).split("\n")[found.line - 1][found.column - 1 :].startswith("visitor:")
@@ -270,7 +270,7 @@ def test_the_key_that_says_how_long_is_renamed_with_what_it_reads() -> None:
 
 @pytest.mark.slow
 def test_every_state_key_phrase_and_route_can_be_renamed() -> None:
-    """A sample of all words that can: the project after it says the same, so it has no findings."""
+    """After each renaming, in a random sample of the names, the project still has no findings."""
     uses = [w for w in SHIPPED.index.uses if w.defines and w.text and w.place.file in (TOUR, VISITORS, "lumen.yaml")]
     chosen = Random(1).sample([w for w in uses if w.kind in (NameKind.STATE, NameKind.CONTEXT, NameKind.PHRASE)], 5)
     for word in chosen:
@@ -328,7 +328,7 @@ def test_a_renaming_that_would_break_the_project_is_refused() -> None:
 
 @for_each("outdated", [True, False])
 def test_a_renaming_while_files_change_is_asked_for_again(outdated: bool) -> None:
-    """The editor hears that the content was modified; else it gets the edits."""
+    """The editor is told that the content was modified, or else gets the edits."""
     judgement = None if outdated else Judgement(SHIPPED.diagnostics, {})
     server = Mock(settled=AsyncMock(), at=Mock(return_value=(SHIPPED, *place(SHIPPED, TOUR, "target: how_are|_you"))))
     server.judge.return_value.judge = AsyncMock(return_value=judgement)
@@ -338,7 +338,7 @@ def test_a_renaming_while_files_change_is_asked_for_again(outdated: bool) -> Non
 
 
 def test_an_error_is_harm_although_warnings_are_no_longer_reported() -> None:
-    """Names that nothing uses are reported of files without errors only."""
+    """Unused names are reported only for files without errors."""
     used = "initial: a\ncontext: {b: 1, c: 2, d: 3}\nstates: {a: {on: {heard: a}}}\n"
     before, _ = first(f"|{used}")
     after = before.changed(HOST, before.text(HOST).replace("heard: a", "heard: z"))

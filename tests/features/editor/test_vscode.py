@@ -25,7 +25,7 @@ TOUR = "behaviors/tour.yaml"
 
 @pytest.fixture(scope="module")
 def extension(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The folder in what `scripts/vsix.py` builds."""
+    """The extension's folder in the package that `scripts/vsix.py` builds."""
     fetched("vscode")
     folder = tmp_path_factory.mktemp("vscode")
     run_guarded(

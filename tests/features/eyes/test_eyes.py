@@ -1,4 +1,4 @@
-"""The visual module: faces drawn and photographed, names that it learns, and images that are none."""
+"""The visual module: drawn and photographed faces, names that it learns, and bodies that are not images."""
 
 import base64
 import importlib.util
@@ -50,7 +50,7 @@ def body(pixels: Pixels, time: float | None = None) -> dict[str, Any]:
 
 @pytest.fixture(scope="module")
 def photographed() -> Pixels:
-    """320 x 240, the face about at (192, 61)."""
+    """The photograph as 320 x 240 pixels, with the face at about (192, 61)."""
     with Image.open(PHOTOGRAPH) as picture:
         return np.asarray(picture.convert("RGB").crop((0, 0, 400, 300)).resize((320, 240)))
 
@@ -60,7 +60,7 @@ def drawn(project: Project) -> Mapping[tuple[float, float], tuple[Pixels, tuple[
     """Camera images of the visitor at four places [m], each with the true position of the face [px]."""
     robot = SimulatedRobot(project.body, Path(project.root) / "models", project.hall)
     seen = {}
-    robot.advance(1.0)  # until it stands as it stands
+    robot.advance(1.0)  # until it stands still
     for x, y in ((1.2, 0.3), (1.3, 0.5), (1.5, 0.0), (2.0, -0.5)):
         robot.place(Visitor(x=x, y=y))
         robot.advance(0.02)
@@ -84,7 +84,7 @@ def eyes(stand: Make) -> Callable[..., Stand]:
 
 @pytest.mark.pictures
 def test_finds_the_drawn_face_where_it_is(eyes: Make, project: Project, drawn: Mapping[Any, Any]) -> None:
-    """Its head is larger than people's are."""
+    """The drawn head is larger than a person's."""
     here = eyes(with_options(project, "eyes", face_width=0.25))
     faces, exact = here.listen("lumen.visual.face.detection"), here.listen("lumen.visual.face.tracking")
     for number, (place, (pixels, truth)) in enumerate(drawn.items()):

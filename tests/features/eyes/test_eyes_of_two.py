@@ -1,4 +1,4 @@
-"""One process of eyes looks for two robots: what each camera sees, its own robot hears."""
+"""One process of eyes serves two robots: each robot hears what its own camera sees."""
 
 from dataclasses import replace
 

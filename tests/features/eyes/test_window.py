@@ -1,4 +1,4 @@
-"""The eyes' window: what they see and find, as a browser gets it."""
+"""The eyes' window: a browser gets the images with the faces that were found."""
 
 import http.client
 import socket
@@ -21,7 +21,7 @@ from tests.features.conftest import Stand, with_options
 from tests.features.eyes.test_eyes import body, photographed
 from tests.waiting import HANG, until
 
-pytestmark = pytest.mark.rest  # dear
+pytestmark = pytest.mark.rest  # expensive
 
 __all__ = ["photographed"]
 
@@ -35,7 +35,7 @@ def looking(address: str, **headers: str) -> http.client.HTTPResponse:
 
 
 def picture(page: http.client.HTTPResponse) -> np.ndarray:
-    """The next picture of the film."""
+    """Return the next picture of the film."""
     assert page.readline() == b"--frame\r\n"
     assert page.readline() == b"Content-Type: image/jpeg\r\n"
     length = int(page.readline().partition(b":")[2])

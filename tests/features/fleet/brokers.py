@@ -57,7 +57,7 @@ class FleetBrokers:
         return str(done.stdout)
 
     def url(self, name: str, user: str = "") -> str:
-        """The address of a broker for one of its users: the robots of a house, the operators of the centre."""
+        """Return the address of a broker for one of its users: the robots of a house, the operators of the centre."""
         who = user or ("operators" if name == CENTRE else "robots")
         return f"amqp://{who}:{name}-{who}@127.0.0.1:{self.brokers[name].port}/"
 
@@ -90,10 +90,10 @@ class FleetBrokers:
 
 
 def blocks(language: str) -> list[str]:
-    """The blocks of code of the page in that language: the centre's first, then a house's."""
+    """Return the blocks of code of the page in that language: the centre's first, then a house's."""
     return re.findall(rf"(?m)^```{language}\n([\s\S]*?)^```$", PAGE.read_text(encoding="utf-8"))
 
 
 def _plugins(commands: str) -> list[str]:
-    """The plugins that the commands enable."""
+    """Return the plugins that the commands enable."""
     return [word for word in shlex.split(commands) if word.startswith("rabbitmq_")]

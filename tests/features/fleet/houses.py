@@ -1,4 +1,4 @@
-"""A small project of a fleet, keys, and what a centre sends."""
+"""A small project of a fleet, keys, and the messages of a centre."""
 
 import json
 from collections.abc import Callable, Mapping
@@ -20,7 +20,7 @@ HOUSE, ROBOT = "itb", "nao1"
 
 
 def project(folder: Path, key: str = "") -> Path:
-    """A copy of the example's project, which trusts that key."""
+    """Copy the example's project, which then trusts that key; return the copy."""
     copied_project(EXAMPLE, folder)
     if key:
         file = folder / "fleet.yaml"
@@ -29,7 +29,7 @@ def project(folder: Path, key: str = "") -> Path:
 
 
 def changed(root: Path, old: str = "Hello! I am Nao.", new: str = "Welcome! I am Nao.") -> dict[str, bytes]:
-    """The files of a project with another sentence."""
+    """Return the files of a project with another sentence."""
     files = dict(read_files(root))
     text = files["behaviors/hello.yaml"].decode()
     assert old in text
@@ -46,7 +46,7 @@ def ordered(
     house: str = HOUSE,
     trying: str = "",
 ) -> dict[str, str]:
-    """An order, signed."""
+    """Return an order with its signature."""
     text = DesiredState(centre, term, version, house, {ROBOT: wanted} if wanted else {}, trying).text()
     return {"order": text, "signature": signer.sign(ORDER, text.encode())}
 
@@ -75,7 +75,7 @@ class Taker:
         self.installed.append(fingerprint(files))
 
     def take(self, agent: FleetAgent) -> None:
-        """Take what was offered last, and let it prove itself."""
+        """Apply the files that were offered last, and let them prove themselves."""
         files, answer = self.offered[-1]
         before, self.running, self.on_probation = self.running, fingerprint(files), True
         answer({"verdict": "applied", "before": before, "visits": {"visits": 9, "same": 7}})
@@ -98,7 +98,7 @@ class House:
         self.agent = self.begin()
 
     def begin(self) -> FleetAgent:
-        """The agent, as after a start."""
+        """Make the agent anew, as after a start, and return it."""
         self.agent = FleetAgent(
             HOUSE, ROBOT, self.signer.public, self.taker, self.memory, BundleFolder(self.folder / "kept"),
             save=lambda memory: self.saved.append(json.dumps(memory.order)) or "", tell=self.told.append,
@@ -107,7 +107,7 @@ class House:
         return self.agent
 
     def send(self, files: Mapping[str, bytes], version: int = 1) -> str:
-        """Order these files and send them; their hash."""
+        """Order these files and send them; return their hash."""
         self.agent.order(ordered(self.signer, fingerprint(files), version))
         self.agent.tick()
         for body in messages_of(files, self.signer):

@@ -64,7 +64,7 @@ class Museums:
         return self.served
 
     def kill(self) -> None:
-        """End the centre as a power cut would: what it would write when it is closed is not written."""
+        """End the centre as a power cut would, without writing what it writes when it is closed."""
         served = self.served
         served._desk.close()
         if served._stream:

@@ -1,4 +1,4 @@
-"""The agent of a robot: what it takes, what it refuses and tells, and how it gets there after everything."""
+"""The agent of a robot: what it applies, refuses and reports, and its recovery after each fault."""
 
 import base64
 import json
@@ -59,7 +59,9 @@ def test_a_bundle_is_fetched_checked_taken_proved_and_installed(house: House) ->
 
 
 def test_a_bundle_is_tried_and_not_taken(house: House) -> None:
-    """Fetched, fitted to the house, judged; what comes of it is told, and what the robot runs is as it was."""
+    """A dry run fetches the bundle, fits it to the house, and reports the verdict; the robot runs the same files as
+    before.
+    """
     files, before = changed(house.root), house.taker.running
     hash = fingerprint(files)
     house.agent.order(ordered(house.signer, "", trying=hash))
@@ -116,7 +118,7 @@ def test_keys_of_the_house_are_put_in_place_of_the_bundles() -> None:
 
 
 def only(files: Mapping[str, bytes], signer: Signer) -> dict[str, Any]:
-    """The one message of a small bundle."""
+    """Return the only message of a small bundle."""
     (body,) = messages_of(files, signer)
     return body
 

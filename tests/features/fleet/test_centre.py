@@ -1,4 +1,4 @@
-"""A centre with agents on one bus: what it writes down, sends, answers, and does after it was killed."""
+"""A centre with agents on one bus: what it stores, sends and answers, and its recovery after it was killed."""
 
 import json
 import re
@@ -54,7 +54,7 @@ class Hall:
         self.bus.subscribe(bundle_key(house), lambda message: agent.bundle(message.body))
 
     def serve(self) -> ServedCentre:
-        """The centre, as after a start."""
+        """Start the centre from the files that it wrote, and return it."""
         served = ServedCentre(self.root, self.signer, MemoryBus(f"fleet-{self.folder.name}"), self.lines.append)
         served.centre._clock = lambda: self.now  # the time that the test makes
         self.served = served

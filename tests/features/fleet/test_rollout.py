@@ -1,4 +1,4 @@
-"""A rollout: its steps, its three verdicts, and that never more robots than its step has run what is not proved."""
+"""A rollout: its steps, its three verdicts, and that no more robots than its step run an unproved bundle."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -176,7 +176,7 @@ TRIED = RolloutPlan(PLAN.steps, PLAN.pause, PLAN.abort_if, try_first=True)
 
 def test_all_try_a_bundle_before_the_first_one_takes_it() -> None:
     world, most = World(20, 14, TRIED), []
-    world.robots["h1/nao1"].on = False  # who is not there is not waited for
+    world.robots["h1/nao1"].on = False  # absent robots are not waited for
     world.roll(NEW)
     until(world, lambda: world.centre.rollout.tried or most.append(world.on(NEW)))
     assert {*most} == {0}

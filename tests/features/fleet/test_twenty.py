@@ -64,7 +64,7 @@ class RunningRobot:
 
 
 class Twenty:
-    """All of them, and a centre; `live` lets them live until something holds, and looks at every moment."""
+    """All twenty robots and a centre; `live` lets them live until a condition holds, and checks them at each moment."""
 
     def __init__(self, brokers: FleetBrokers, folder: Path, seed: int) -> None:
         self.brokers, self.random = brokers, random.Random(seed)
@@ -115,7 +115,7 @@ class Twenty:
                 self._misfortune()
 
     def _look(self) -> None:
-        """No more robots than the step has run what is not proved."""
+        """Check that no more robots than the step allows run an unproved bundle."""
         state = self.served.centre.state
         fine = {"", *self.first, *state.proved}
         unproved = sum(robot.bundle not in fine for robot in self.robots.values())

@@ -1,4 +1,4 @@
-"""Robots, messages and centres as in the world: late, lost, doubled, killed, off for weeks, with clocks that lie."""
+"""Simulated robots, messages and centres, with delays, losses, repetitions, kills and wrong clocks."""
 
 import random
 from dataclasses import dataclass, field, replace
@@ -68,7 +68,7 @@ class SimulatedRobot:
 
 
 class World:
-    """A fleet of so many robots in three houses, and a network that does to messages what `chance` says."""
+    """A fleet of robots in three houses, and a network that treats messages as `chance` decides."""
 
     def __init__(self, count: int, seed: int, plan: RolloutPlan = PLAN) -> None:
         self.random, self.now, self.plan = random.Random(seed), 1000.0, plan
@@ -117,7 +117,7 @@ class World:
         self.alive, self.heard = False, {}
 
     def restart(self) -> None:
-        """From what was written down, with a clock that may have been set meanwhile."""
+        """Start the centre again from what it wrote, with a clock that may have been changed."""
         self.alive, self.centre = True, state_from_json(self.written)
 
     def tick(self) -> None:
@@ -150,6 +150,6 @@ class World:
             self.keep(decide(self.centre, "going", "seen"))
 
     def stranger(self, house: str, wanted: str) -> DesiredState:
-        """An order of another centre, of the same term."""
+        """Return an order of another centre, of the same term."""
         robots = dict.fromkeys(self.fleet.houses[house].robots, wanted)
         return replace(self.orders()[0], centre="two", house=house, robots=robots, version=self.centre.version + 5)

@@ -1,4 +1,4 @@
-"""Pictures of behaviours: what they show, and that nothing in them lies on top of anything else."""
+"""Diagrams of behaviours: what they show, and that nothing in them overlaps."""
 
 from collections.abc import Iterator
 from itertools import combinations
@@ -40,7 +40,7 @@ def pictures(machine: MachineDefinition) -> Iterator[Diagram]:
 
 
 def nested(boxes: tuple[PlacedBox, ...]) -> Iterator[tuple[PlacedBox, ...]]:
-    """Boxes side by side, in every frame."""
+    """Yield the boxes that are side by side, for each frame."""
     yield boxes
     for box in boxes:
         yield from nested(box.within)

@@ -1,4 +1,4 @@
-"""Charts as other people write them for XState: imported, they go where XState goes with the original."""
+"""Charts that other people wrote for XState: once imported, they reach the states that XState reaches."""
 
 import json
 from typing import Any
@@ -127,7 +127,7 @@ def ours(event: str) -> str:
 
 
 def way(machine: Machine, events: list[str]) -> list[list[str]]:
-    """The paths of the active states at first and after each event."""
+    """Return the paths of the active states at first and after each event."""
     paths = {state.name: path for path, state in machine.states.items() if path and not path.endswith(".ended")}
     it = Interpreter(machine)
     it.start()
@@ -164,7 +164,7 @@ def test_what_an_actor_did_is_told_and_its_end_waited_for() -> None:
 
 
 def test_a_behaviour_invoked_by_that_id_is_what_is_waited_for() -> None:
-    """The machine works again after the change that the hint suggests."""
+    """After the change that the hint suggests, the machine works again."""
     data, _ = read(LOADING)
     data["states"]["shown"]["invoke"] = {"behavior": "watcher", "id": "watch.er"}
     watcher = {"initial": "a", "states": {"a": {"on": {"END": "z"}}, "z": FINAL}}

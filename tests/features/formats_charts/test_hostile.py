@@ -1,4 +1,4 @@
-"""Files that are not what they say, or want to be more: one clear line."""
+"""Files of another kind than they claim, or of a hostile size, are refused in one clear line."""
 
 import json
 from collections.abc import Callable, Iterator
@@ -138,7 +138,7 @@ def test_any_json_gives_a_machine_or_a_line(states: dict[str, Any], on: Any) -> 
 
 
 def builds(read: Reader, content: bytes) -> None:
-    """The file is refused in a line, or what came of it is a machine without errors."""
+    """Check that the file is refused in a line, or becomes a machine without errors."""
     with suppress(ForeignFileError):
         data, _ = read("chart", content, "chart")
         build(data)
@@ -157,7 +157,7 @@ def test_what_is_whole_is_not_complained_of() -> None:
 
 
 def large_files() -> Iterator[tuple[Reader, bytes]]:
-    """Ten thousand states, candidates whose order no map can keep, and values given to each other in a chain."""
+    """Yield charts of ten thousand states, of transitions whose order no map can keep, and of chained assignments."""
     order = b'<transition event="e%d.x"/><transition event="e%d"/><transition event="e%d.x"/>'
     chart = [
         b'<state id="s%d"><transition event="e" target="s%d"/></state>' % (n, (n + 1) % 10_000) for n in range(10_000)

@@ -25,7 +25,7 @@ ACTOR = "xstate.done.actor.act"
 
 
 def stranger(random: Random) -> dict[str, Any]:
-    """A random XState chart: histories of every spelling, actors, final regions, targets by name, path and id."""
+    """Return a random XState chart: all spellings of histories, actors, final regions, targets by name, path and id."""
     names: list[str] = []
     root = _state(random, "m", 3, names)
     while not root.get("states"):
@@ -62,7 +62,7 @@ HISTORIES: tuple[Mapping[str, Any], ...] = (
 
 
 def _lead(random: Random, state: dict[str, Any], path: str, names: list[str], region: bool = False) -> None:
-    """Give it transitions, and at times an actor; what ends leads to a later state, so that no run is endless."""
+    """Give the state transitions, and at times an actor; each end leads to a later state, so that no run is endless."""
     if state.get("type") in ("final", "history") or "history" in state:
         return
     rows: dict[str, Any] = {}
@@ -112,7 +112,7 @@ def test_a_generated_chart_goes_where_xstate_goes_or_it_was_said() -> None:
 
 @pytest.mark.parametrize("part", range(4))
 def test_what_is_written_loads(part: int, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """Damaged charts, motions and controllers: a file that loads, or one line and none."""
+    """Damaged charts, motions and controllers become a file that loads, or one line and no file."""
     written = 0
     for seed in range(part * 60, part * 60 + 60):
         name, content = foreign_file(Random(seed))

@@ -21,7 +21,7 @@ FORMATS = {"scxml": (write_scxml, read_scxml), "xstate": (write_xstate, read_xst
 
 
 def through(machine: Machine, format: str) -> dict[str, Any]:
-    """The machine written and read; nothing may be left out on the way."""
+    """Return the data of the machine after a round trip; fail if anything is left out on the way."""
     write, read = FORMATS[format]
     text, written = write(machine, dotted("machine"))
     data, found = read("file", text.encode(), "machine")
@@ -30,7 +30,7 @@ def through(machine: Machine, format: str) -> dict[str, Any]:
 
 
 def trace(machine: Machine, happenings: list[str]) -> list[tuple[Any, ...]]:
-    """The observable behaviour of a run, step by step: states, commands, context and raised events."""
+    """Return the observable behaviour of a run, step by step: states, commands, context and raised events."""
     steps = run(machine, happenings)
     return [
         (
@@ -51,7 +51,7 @@ def behaves_the_same(format: str, chart: dict[str, Any], happenings: list[str]) 
 
 
 def settles(format: str, chart: dict[str, Any]) -> None:
-    """The second time nothing changes, and the YAML holds the same data."""
+    """Check that a second round trip changes nothing, and that the YAML holds the same data."""
     once = through(Machine.from_dict(chart), format)
     twice = through(Machine.from_dict(once), format)
     assert json.dumps(twice) == json.dumps(once)

@@ -11,7 +11,7 @@ HEAD = '<scxml xmlns="http://www.w3.org/2005/07/scxml" datamodel="ecmascript" na
 
 
 def read(body: str) -> tuple[dict[str, Any], list[str]]:
-    """The data, and the line and message of each finding."""
+    """Return the data, and the line and message of each finding."""
     data, diagnostics = read_scxml("chart.scxml", (HEAD + body + "</scxml>").encode(), "chart")
     Machine.from_dict(data)
     return data, [f"{d.place.line}: {d.message}" for d in diagnostics]

@@ -9,7 +9,7 @@ from lumen.statechart import Machine, initial
 
 
 def read(chart: dict[str, Any]) -> tuple[dict[str, Any], list[str]]:
-    """The data, and the line and message of each finding."""
+    """Return the data, and the line and message of each finding."""
     data, diagnostics = read_xstate("chart.json", json.dumps(chart, indent=1).encode(), "chart")
     Machine.from_dict(data)
     return data, [f"{d.place.line}: {d.message}" for d in diagnostics]

@@ -138,7 +138,7 @@ def test_a_system_of_matlab() -> None:
 
 
 def test_a_function_block_of_the_norm() -> None:
-    """One norm alone means its dual: with ASUM for OR, AND is the product."""
+    """A norm given alone implies its dual: with ASUM for OR, AND is the product."""
     data, found = said(read_fcl, FCL)
     assert found == []
     assert data["operators"] == {"conjunction": "algebraic-product", "disjunction": "algebraic-sum"}
@@ -151,7 +151,9 @@ def test_a_function_block_of_the_norm() -> None:
 
 
 def test_a_function_block_as_jfuzzylogic_writes_it() -> None:
-    """Its comments, its shapes, and no RANGE: from where the first term begins to where the last one ends."""
+    """It has comments, jFuzzyLogic's shapes, and no RANGE: the range reaches from the first term's begin to the last
+    one's end.
+    """
     data, found = said(read_fcl, JFUZZY)
     assert found == [
         "3:1 `service` has no range: it gets the range of its terms",
@@ -180,7 +182,7 @@ def test_a_rule_of_matlab_without_an_output_has_no_conclusion() -> None:
 
 @for_each("norm", ["algebraic", "bounded", "drastic", "einstein", "hamacher"])
 def test_the_norms_of_octave(norm: str) -> None:
-    """All that its fuzzy-logic-toolkit has, for `and` and `or`, implication and aggregation."""
+    """All norms of its fuzzy-logic-toolkit are read, for `and` and `or`, implication and aggregation."""
     product = f"{norm}_{'difference' if norm == 'bounded' else 'product'}"
     text = FIS.replace("AndMethod='prod'", f"AndMethod='{product}'").replace(
         "OrMethod='probor'", f"OrMethod='{norm}_sum'"
@@ -271,7 +273,7 @@ def test_no_formula_breaks_the_reader(text: str) -> None:
 @given(st.data())
 @pytest.mark.parametrize(("read", "text"), [(read_fis, FIS), (read_fcl, FCL), (read_fll, FLL)])
 def test_no_file_breaks_a_reader(read: Read, text: str, data: st.DataObject) -> None:
-    """Lines dropped, doubled and cut, and bytes of any kind in between."""
+    """Lines are dropped, doubled and cut, and bytes of any kind are inserted."""
     lines = text.encode().splitlines(keepends=True)
     for _ in range(data.draw(st.integers(1, 4))):
         i = data.draw(st.integers(0, len(lines) - 1))

@@ -30,7 +30,7 @@ def a_block(tip: str, rules: str = "") -> str:
 
 
 def test_what_jfuzzylogic_computes_from_its_inputs() -> None:
-    """FUNCTION terms; an input that only they ask for; of one term's degrees ACCU makes one."""
+    """A FUNCTION term may use an input that no rule uses, and ACCU combines the degrees of one term."""
     tip = "TERM a := FUNCTION 2 * s + LN(t) ^ 2 - Log(100); TERM b := 7; METHOD : COGF;"
     data, found = said(a_block(tip, "ACCU : MAX;"))
     assert found == ["3:1 the range of `tip` is empty, so its values are not limited"]

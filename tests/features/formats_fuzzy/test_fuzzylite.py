@@ -1,4 +1,4 @@
-"""pyfuzzylite as witness: the examples it carries, and each word of the language by itself.
+"""pyfuzzylite as an oracle, for its own examples and for each word of the language by itself.
 
 The only difference: if pyfuzzylite returns NaN or infinity, Lumen returns the default value or raises an error.
 """
@@ -38,7 +38,7 @@ from tests.tables import for_each
 
 EXAMPLES = matching(Path(fl.__file__).parent / "examples", "**/*.fll")
 EDGES = {"binary": 1, "arc": 1}
-"""At how many of its parameters a membership is compared: a falling arc of theirs has a hole at its end."""
+"""The number of parameters at which memberships are compared, if not all: their falling arc has a gap at its end."""
 factories = fl.settings.factory_manager
 
 
@@ -75,7 +75,7 @@ def agree(ours: Controller, engine: Any, points: list[dict[str, float]]) -> int:
 
 
 def example(file: Path) -> tuple[Mapping[str, Any], list[Any], Controller, Any, list[dict[str, float]]]:
-    """An example of the package: our data of it, what was found, both engines, and 50 points in its ranges."""
+    """Return an example of the package: our data and findings, both engines, and 50 points in its ranges."""
     data, found = read_fll(str(file), file.read_bytes(), file.stem)
     engine, draw = fl.FllImporter().from_file(file), Random(file.stem)
     points = [
@@ -111,7 +111,7 @@ width = st.floats(0.05, 30).map(lambda x: round(x, 3))
 
 
 def shaped(kind: str) -> st.SearchStrategy[tuple[float, ...]]:
-    """Parameters of a kind of term, in our order, which is FuzzyLite's."""
+    """Return a strategy for the parameters of a kind of term, in our order, which is FuzzyLite's."""
     names = TERM_PARAMETERS[kind]
     ascending = st.lists(number, min_size=len(names), max_size=len(names), unique=True).map(sorted).map(tuple)
     match kind:
@@ -244,7 +244,7 @@ def test_a_defuzzifier(method: str) -> None:
 
 @pytest.mark.parametrize("method", ["WeightedAverage", "WeightedSum"])
 def test_terms_read_backwards_in_a_controller(method: str) -> None:
-    """Only where every term has a weight: a term without one counts nothing here, there it makes the output NaN."""
+    """Every term needs a weight: a term without one counts nothing in Lumen, and makes pyfuzzylite's output NaN."""
     assert agree(*both(defuzzifier=method, terms=BACKWARDS, aggregation="Maximum"), spread(30, 2.1, 7.9)) == 30
 
 

@@ -1,4 +1,4 @@
-"""Motions of others that ask more of the robot than it can: what is cut, what gets more time, and what is said."""
+"""Imported motions that exceed the robot's abilities: what is cut, what gets more time, and what is reported."""
 
 from pathlib import Path
 from shutil import copytree

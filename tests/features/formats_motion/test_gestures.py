@@ -1,4 +1,4 @@
-"""Motions of Webots, Choregraphe and NAOqi's Python: what becomes of them, and of files that are none."""
+"""Imports of motions of Webots, Choregraphe and NAOqi's Python, and of files that are not motions."""
 
 from math import degrees, radians
 from pathlib import Path
@@ -73,7 +73,7 @@ def read(file: str, text: str, timeline: str = "") -> tuple[dict[str, Any], list
 
 
 def built(data: dict[str, Any]) -> MotionDefinition:
-    """The motion of a file with that data, which has nothing wrong with it."""
+    """Return the motion of a file with that data; fail if the file has a fault."""
     document, found = parse("motion.yaml", document_yaml(data, "motion").encode())
     assert document is not None
     report = DocumentReport(document)

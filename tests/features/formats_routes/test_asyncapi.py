@@ -32,7 +32,7 @@ def parsed(*projects: Project) -> list[dict[str, Any]]:
 
 
 def with_face(schema: dict[str, Any]) -> Project:
-    """The shipped project with another schema for faces, and few other routes."""
+    """Return the shipped project with another schema for faces, and few other routes."""
     before = project()
     routes = {name: before.routes[name] for name in ("face", "command")}
     return replace(before, routes=routes, messages={**before.messages, "face.detection": schema})

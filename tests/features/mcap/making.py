@@ -1,4 +1,4 @@
-"""Recordings to try things with."""
+"""Recordings for tests."""
 
 import base64
 from collections.abc import Iterator

@@ -67,7 +67,7 @@ def test_a_message_has_its_route_s_schema() -> None:
 
 @pytest.fixture(scope="module")
 def long(tmp_path_factory: pytest.TempPathFactory) -> bytes:
-    """Some pieces, and what is attached, without an end."""
+    """The bytes of a recording with some chunks and attachments, without an end."""
     path = tmp_path_factory.mktemp("long") / "long.mcap"
     file = RecordingFile(path)
     file.write([RecordedNotes("lumen", (("robot", "NAO"),)), RecordedFile("a.zip", "application/zip", b"zip", 1)])

@@ -1,4 +1,4 @@
-"""The last minutes are at hand, are kept where something happened, and are no more than is wanted."""
+"""A ring holds the last minutes, keeps them if something happened, and stays within its limits."""
 
 from pathlib import Path
 
@@ -19,7 +19,7 @@ def folder(tmp_path: Path) -> RecordingsFolder:
 
 
 def live(tape: RingTape, first: int, last: int, step: int = 10) -> None:
-    """A message each so many seconds."""
+    """Write a message every `step` [s] from `first` to `last` [s]."""
     for at in range(first, last, step):
         tape.write(encoded(said("lumen.a", {"at": at}, at)), BEGAN + at)
         tape.settle(BEGAN + at)

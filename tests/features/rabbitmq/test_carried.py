@@ -1,4 +1,4 @@
-"""How messages travel as their routes say, with a real broker."""
+"""Messages travel as their routes declare, with a real broker."""
 
 import threading
 import time
@@ -21,7 +21,7 @@ Open = Callable[..., Bus]
 
 @pytest.fixture
 def opened(broker: RabbitMQ) -> Iterator[Open]:
-    """Makes handles whose routes are given, closed at the end; what they left on the broker is deleted."""
+    """Return a function that makes buses with these routes; after the test they are closed, their queues deleted."""
     handles: list[Bus] = []
 
     def make(*routes: Route, url: str = broker.url) -> Bus:
@@ -51,14 +51,14 @@ def route(key: str, carried: Carried, direction: Direction = Direction.IN, **opt
 
 
 def read(channel: Any, queue: str) -> tuple[Any, Any, bytes]:
-    """The next message of a queue, waited for."""
+    """Wait for the next message of a queue, and return it."""
     got: list[Any] = []
     until(lambda: got.append(channel.basic_get(queue, auto_ack=True)) or got[-1][0])
     return tuple(got[-1])  # type: ignore[return-value]
 
 
 def copies(channel: Any, exchange: str) -> str:
-    """A queue of one's own for what comes to a fanout from now on."""
+    """Declare a queue for the messages that a fanout exchange receives from now on; return its name."""
     queue = str(channel.queue_declare("", exclusive=True).method.queue)
     channel.queue_bind(queue, exchange)
     return queue
@@ -97,7 +97,7 @@ def test_old_telemetry_is_not_handed_on(opened: Open) -> None:
     bus.subscribe("lumen.old", slow)
 
     def arrived(body: object) -> bool:
-        """Whether one has come; sends one more, for on a slow machine it may be old when it gets there."""
+        """Return whether this body has arrived; first send it again, since on a slow machine it may arrive too old."""
         bus.publish("lumen.old", body)
         return body in seen.bodies
 

@@ -42,7 +42,7 @@ def no_thread_stays() -> Iterator[None]:
 
 
 class Sending:
-    """Publishes numbers on both ways, at a pace, until it is told to end; `sent` is how many of each."""
+    """Publishes numbers under both keys, at a pace, until it is told to end; `sent` is how many under each."""
 
     def __init__(self, bus: Bus, pause: float) -> None:
         self.sent, self._bus, self._pause = 0, bus, pause
@@ -178,7 +178,7 @@ def test_a_network_that_is_cut_for_ten_seconds_loses_and_doubles_nothing(broker:
 
 
 def flood(broker: RabbitMQ, count: int, pause: float) -> float:
-    """So many messages of 200 bytes on each way, to a reader who takes his time; how much memory we had [bytes]."""
+    """Send `count` messages of 200 bytes under each key to a slow reader; return the most memory in use [bytes]."""
     effects, filler = Effects(), "x" * 180
 
     def slow(message: Message) -> None:

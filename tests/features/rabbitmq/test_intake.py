@@ -1,4 +1,4 @@
-"""A flood is cut down to what its route takes before a body is read; the newest of it arrives, all else is counted."""
+"""A flood is reduced to its route's rate before a body is read; the newest messages arrive, the others are counted."""
 
 import logging
 import time
@@ -21,7 +21,7 @@ from tests.waiting import Collector, until
 
 
 class Line:
-    """An intake on a time of its own, and what came through."""
+    """An intake with a clock of the test, and the messages that it let through."""
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch, route: Route | None) -> None:
         self.now, self.number = 0.0, 0
@@ -139,7 +139,7 @@ def test_a_flood_on_the_broker_arrives_as_its_newest_and_everything_else_goes_on
     sent = 0
 
     def flooded() -> bool:
-        """A thousand more: until we have dropped some, beside those that the broker has replaced by newer ones."""
+        """Send a thousand more; return whether we dropped some, beside those that the broker replaced by newer ones."""
         nonlocal sent
         for _ in range(1_000):
             sent += 1

@@ -33,7 +33,7 @@ from tests.waiting import HANG, Collector, until
 
 IMAGES, SLOW, PACKED = "avatar.Pia.data.image", "avatar.Pia.data.image.slow", "avatar.Pia.data.joint.packed"
 FRAMES = 30
-"""A second."""
+"""The frames of a second."""
 
 
 def picture(shade: int = 0) -> Image:
@@ -57,7 +57,7 @@ class Seeing(RecordingRobot):
 
 
 class Plain:
-    """A program with nothing but pika, which hears keys until closed."""
+    """A program that uses pika alone, and receives messages under keys until closed."""
 
     def __init__(self, url: str, *keys: str) -> None:
         self.came: list[tuple[str, Any, bytes]] = []

@@ -1,4 +1,4 @@
-"""One thread waits with the loop; what others ask for is called there, and timers when they are due."""
+"""One thread runs the loop, which calls the requests of other threads, and timers that are due."""
 
 import threading
 from collections.abc import Iterator

@@ -123,7 +123,7 @@ def test_an_answer_that_amqp_cant_carry_costs_that_answer(broker: RabbitMQ, capl
 
 
 def test_a_connection_with_nothing_to_say_sleeps(broker: RabbitMQ) -> None:
-    """Each turn that ended early left a timer behind, which ended another turn."""
+    """A turn of the loop that ends early leaves no timer behind, which would end another turn."""
     connection = PolledConnection(pika.URLParameters(broker.url))
     connection.open_channel()
     for _ in range(100):

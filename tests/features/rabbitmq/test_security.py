@@ -105,7 +105,7 @@ def test_the_name_and_the_password_come_from_a_file(
 
 
 def old_broker(listener: socket.socket, version: str) -> None:
-    """As much of AMQP 0-9-1 as it takes to say who one is, for one connection after the other."""
+    """Answer the handshake of AMQP 0-9-1, in which a broker names its version, for one connection after the other."""
     properties = {"product": "RabbitMQ", "version": version, "capabilities": {"publisher_confirms": True}}
     properties["capabilities"]["basic.nack"] = True  # type: ignore[index]
     answers = {

@@ -65,7 +65,7 @@ def properties(draw: Random) -> Mapping[str, Any]:
 
 
 def marshalled(channel: int, method: Any, said: Mapping[str, Any], body: bytes) -> bytes:
-    """A message as pika writes it."""
+    """Return a message as pika writes it."""
     given = pika.BasicProperties(**{name: value or None for name, value in said.items()})
     pieces = [frame.Body(channel, body[at : at + PIECE]) for at in range(0, len(body), PIECE)]
     frames = frame.Method(channel, method), frame.Header(channel, len(body), given), *pieces
@@ -116,7 +116,7 @@ class Line:
 
 
 class OpenWire(WireConnection):
-    """A connection that writes to such a line."""
+    """A connection that writes to a `Line`."""
 
     is_closed = False
 

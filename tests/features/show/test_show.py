@@ -60,7 +60,7 @@ def _password(tmp_path: Any, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 class Device:
-    """A lamp or a button: a client of MQTT that keeps what comes."""
+    """A lamp or a button: a client of MQTT that keeps the messages that it receives."""
 
     def __init__(self, port: int, *topics: str, user: str = "guest") -> None:
         self.came: list[tuple[str, bytes, bool]] = []
@@ -276,7 +276,7 @@ def free_port() -> int:
 
 @pytest.fixture
 def desk() -> Iterator[tuple[int, list[Any]]]:
-    """A sound desk: its port, and what came to it."""
+    """The port of a sound desk, and the messages that it has received."""
     came, dispatcher = list[Any](), Dispatcher()
     dispatcher.set_default_handler(lambda address, *arguments: came.append((address, arguments)))
     server = ThreadingOSCUDPServer(("127.0.0.1", 0), dispatcher)

@@ -22,7 +22,7 @@ SHORT = {BEHAVIOR: ("duration: 3s", "duration: 50ms")}
 
 @pytest.fixture
 def start(tmp_path: Path, broker: RabbitMQ) -> Iterator[Callable[[str], Path]]:
-    """Start these parts of the project in `tmp_path/hall`; return the file with what the process prints."""
+    """A function that starts these parts of the project in `tmp_path/hall`, and returns the file with their output."""
     with ExitStack() as stack:
 
         def begin(parts: str) -> Path:

@@ -17,7 +17,7 @@ WAITING = "waiting: {on: {face: spraying}}"
 
 
 def button(row: str) -> dict[str, tuple[str, str]]:
-    """The change that gives the state `waiting` a button."""
+    """Return the change that gives the state `waiting` a button."""
     return {BEHAVIOR: (WAITING, f"waiting:\n    on: {{face: spraying}}\n    buttons: [{row}]")}
 
 

@@ -1,4 +1,4 @@
-"""Skills in a whole exhibition: performed by a robot of one's own, reloaded, and refused while a person holds it."""
+"""Skills in a whole exhibition: performed by a custom robot, reloaded, and refused while a person holds the robot."""
 
 from collections.abc import Callable
 from pathlib import Path

@@ -21,7 +21,7 @@ def hear(bus: Bus, text: str) -> None:
 
 
 def context(bus: Bus, name: str, *, step: bool = True) -> None:
-    """The behaviour knows that name, after a step of it or without one."""
+    """Publish that the behaviour knows that name, after a step of the behaviour or without one."""
     stepped = {"entered": [], "exited": [], "event": "heard"} if step else {}
     bus.publish("lumen.state", {"robot": "NAO", "time": 1.0, **stepped, "context": {"visitor": name}})
 

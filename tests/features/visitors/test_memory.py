@@ -18,7 +18,7 @@ DAY = 86_400.0
 
 
 class Calendar:
-    """A date [s since 1970] that a test turns on."""
+    """A clock [s since 1970] that a test advances."""
 
     def __init__(self) -> None:
         self.now = 1_000 * DAY

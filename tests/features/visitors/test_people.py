@@ -1,4 +1,4 @@
-"""Names of people: the same however they are written, found as whole words, and taken out of what names them."""
+"""Names of people: equal however they are written, found as whole words, and removed from texts."""
 
 import unicodedata
 

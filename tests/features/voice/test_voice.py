@@ -35,7 +35,7 @@ def loud(sound: Sound, begin: float, end: float) -> bool:
 
 
 def peak(sound: Sound, begin: float, end: float) -> int:
-    """The greatest sample between these times [s]."""
+    """Return the greatest sample between these times [s]."""
     part = sound.samples[2 * round(begin * sound.rate) : 2 * round(end * sound.rate)]
     return max(map(abs, array("h", part)), default=0)
 
