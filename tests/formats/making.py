@@ -43,7 +43,7 @@ GUARDS = [
 
 @st.composite
 def charts(draw: st.DrawFn, *, deep: bool = True) -> dict[str, Any]:
-    """The data of a machine of at most three levels, some states with ids, and no endless `always`; `deep` allows
+    """Draw the data of a machine of at most three levels, some states with ids, and no endless `always`; `deep` allows
     `initial` to lead deeper than to a child, and actions of transitions to fail."""
     tree = draw(
         st.recursive(st.just({}), lambda t: st.dictionaries(st.sampled_from("abc"), t, min_size=1), max_leaves=8)
@@ -108,7 +108,7 @@ def _fill(draw: st.DrawFn, data: dict[str, Any], deeper: list[str], path: str, n
 
 
 def _begin(draw: st.DrawFn, data: dict[str, Any], names: list[str], path: str) -> None:
-    """Sometimes begin deep inside."""
+    """Sometimes let a compound state begin deep inside."""
     if data.get("type") != "compound":
         return
     keys = [key for key, child in data["states"].items() if child.get("type") not in ("history", "final")]
@@ -123,7 +123,7 @@ HAPPENINGS = st.lists(st.sampled_from([*EVENTS, "tick", "answer", "refuse"]), ma
 
 
 def run(machine: Machine, happenings: list[str]) -> list[Step]:
-    """The steps until the end, or until the machine does not come to rest any more."""
+    """Return the steps until the end, or until the machine does not come to rest any more."""
     steps: list[Step] = []
     with suppress(LumenError):
         steps.append(initial(machine))

@@ -12,7 +12,7 @@ from lumen.motion.tracking import Tracker
 from tests.fuzzy.nao import HEAD, TOP
 
 STEP = 1 / 300
-"""[s] of the joints' motion."""
+"""The step of the joints' motion [s]."""
 
 Pose = tuple[float, float]
 
@@ -25,21 +25,21 @@ class Run:
     pixels: list[tuple[float, float] | None]
 
     def settled(self, axis: int, goal: float, within: float = radians(0.5)) -> float:
-        """[s] after which the axis (0 yaw, 1 pitch) never leaves the goal again."""
+        """Return the time [s] after which the axis (0 yaw, 1 pitch) stays within `within` [rad] of the goal."""
         return next((pose[0] for pose in reversed(self.poses) if abs(pose[1 + axis] - goal) > within), 0.0)
 
     def stray(self, axis: int, since: float) -> float:
-        """The range [rad] of the axis' positions from the time `since` on."""
+        """Return the range [rad] of the axis' positions from the time `since` [s] on."""
         late = [pose[1 + axis] for pose in self.poses if pose[0] >= since]
         return max(late) - min(late)
 
     def farthest(self, camera: Camera = TOP) -> float:
-        """The face's greatest distance from the image's middle, as a part of half the image; inf if lost."""
+        """Return the face's greatest distance from the image's middle, as a part of half the image; inf if lost."""
         across, down = camera.width / 2, camera.height / 2
         return max(max(abs(p[0] / across - 1), abs(p[1] / down - 1)) if p else inf for p in self.pixels)
 
     def overshoot(self, axis: int, goal: float) -> float:
-        """The axis' overshoot beyond the goal, as a part of the way to it."""
+        """Return the axis' overshoot beyond the goal, as a part of the way to it."""
         way = self.poses[0][1 + axis] - goal
         return max(0.0, *(-(pose[1 + axis] - goal) * copysign(1.0, way) for pose in self.poses)) / abs(way)
 
@@ -57,8 +57,8 @@ def run(
 ) -> Run:
     """Let the controller follow a face (its place in the torso frame [m] by time) for `duration` [s].
 
-    `error` [s] is added to the times at which images say they were taken; `sag` [rad] is how far beside the angles they
-    are told the joints come to rest, as weight lets them.
+    `error` [s] is added to the times at which images say they were taken; `sag` [rad] is how far from the angles that
+    they are told the joints come to rest, as weight lets them.
     """
     tracker = Tracker(controller, HEAD)
     head, target = list(start), list(start)

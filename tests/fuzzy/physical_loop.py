@@ -1,4 +1,4 @@
-"""The same loop with everything in it: the simulated robot, and its joints and the faces as messages on the bus."""
+"""The loop of `closed_loop.py` with the simulated robot: its joints and the faces are messages on the bus."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -18,10 +18,10 @@ from lumen.run.tracking import LocalTracking
 from tests.fuzzy.closed_loop import Pose, Run
 
 TICK = 0.02
-"""[s] of an exhibition."""
+"""The tick of an exhibition [s]."""
 
 SETTLING = 1.0
-"""[s] that the robot stands with its head turned away before the controller is switched on."""
+"""The time that the robot stands with its head turned away before the controller is switched on [s]."""
 
 
 def run(
@@ -38,8 +38,8 @@ def run(
     """Let the shipped controller follow a visitor; the head begins so far [deg] beside the pose that centres the face.
 
     The poses of the result are beside that pose too [rad], wherever face and torso are by then: they end at 0. Images
-    are taken every `tick` [s] and published `latency` [s] later. `within` bends the first pose.
-    The robot falls short in the ways that `imperfections` say, else in all.
+    are taken every `tick` [s] and published `latency` [s] later. `within` limits the first pose.
+    The robot has these `imperfections`; None stands for all.
     """
     few = replace(project, routes={name: project.routes[name] for name in ("face", "joint")})
     models = Path(project.root) / "models"
@@ -73,7 +73,7 @@ def run(
 
 
 def towards_face(robot: SimulatedRobot) -> Pose:
-    """The yaw and pitch [rad] that would bring the visitor's face to the middle of the image."""
+    """Return the yaw and pitch [rad] that would bring the visitor's face to the middle of the image."""
     torso = robot.world.data.body("nao/Torso")
     face = robot.world.data.site("visitor_face").xpos
     x, y, z = torso.xmat.reshape(3, 3).T @ (face - torso.xpos)

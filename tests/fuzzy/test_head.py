@@ -40,7 +40,7 @@ def test_a_batch_says_what_single_evaluations_say(head: Controller) -> None:
 
 
 def test_the_middle_is_flat_for_45_pixels(head: Controller) -> None:
-    """The result of min-max and centroid with the paper's tables, and the reason why the tracker magnifies."""
+    """Min-max and the centroid have this result with the paper's tables; therefore the tracker magnifies."""
     assert head.evaluate({"FaceXLoc": 205, "FaceYLoc": 120})["AngleX"] == pytest.approx(0.0, abs=0.01)
     assert abs(head.evaluate({"FaceXLoc": 225, "FaceYLoc": 120})["AngleX"]) > 0.5
 

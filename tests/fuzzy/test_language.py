@@ -83,7 +83,7 @@ def test_a_fault_in_the_table_or_a_formula_is_shown_at_its_word(old: str, new: s
 
 
 def test_the_schema_s_own_examples_are_sound() -> None:
-    """Each example of a term or table in the schema is one that the loader takes."""
+    """The loader accepts each example of a term or table in the schema."""
     schema = load_schema("controller")
     for kind, spec in schema["$defs"]["term"]["properties"].items():
         for example in spec.get("examples", ()):

@@ -28,7 +28,7 @@ def diagnose(text: str) -> list[Diagnostic]:
 
 
 def shown(text: str, diagnostic: Diagnostic) -> str:
-    """The text at the diagnostic's place."""
+    """Return the text at the diagnostic's place."""
     place = diagnostic.place
     lines = text.splitlines()[place.line - 1 : place.end_line]
     if len(lines) > 1:

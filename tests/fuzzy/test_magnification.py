@@ -13,7 +13,7 @@ from lumen.language.controllers import Activation, Conjunction, ControllerDefini
 
 MIDDLE = {"FaceXLoc": 160.0, "FaceYLoc": 120.0}
 ZOOMS = [2 ** (k / 2) for k in range(12)]
-"""Up to 64, as the shipped file has it."""
+"""The magnifications below 64, the greatest one of the shipped file."""
 
 
 @pytest.fixture(scope="module")
@@ -32,7 +32,7 @@ def asked(monkeypatch: pytest.MonkeyPatch) -> list[Mapping[str, float]]:
 
 
 def greatest(controller: ControllerDefinition, inputs: Mapping[str, float]) -> dict[str, float]:
-    """By definition: the image is magnified each way, the answer made as much smaller."""
+    """Return the greatest answer by definition: for each magnification, the answer divided by it."""
     evaluator = Evaluator(controller)
     answers = []
     for zoom in ZOOMS:
@@ -44,7 +44,7 @@ def greatest(controller: ControllerDefinition, inputs: Mapping[str, float]) -> d
 
 
 def sights(count: int) -> Iterator[dict[str, float]]:
-    """Faces all over the image, more of them near the middle."""
+    """Yield faces all over the image, more of them near the middle."""
     draw = random.Random(98)
     for _ in range(count):
         near = 10 ** draw.uniform(-2.0, 0.0)

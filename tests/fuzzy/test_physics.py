@@ -24,7 +24,7 @@ def project() -> Project:
 
 
 def cases(seed: int, count: int) -> Sequence[Case]:
-    """Visitors of all sizes about the stage, each 15 deg beside the image's middle in yaw and 8 deg in pitch."""
+    """Return visitors of all sizes about the stage, each 15 deg beside the image's middle in yaw and 8 deg in pitch."""
     rng, result = Random(seed), []
     for _ in range(count):
         visitor = Visitor(rng.uniform(1.0, 2.5), rng.uniform(-0.6, 0.6), rng.uniform(1.2, 1.9))
@@ -34,7 +34,7 @@ def cases(seed: int, count: int) -> Sequence[Case]:
 
 
 def within_reach(yaw: float, pitch: float) -> Pose:
-    """The nearest pose [rad] that the head can take, well within its limits."""
+    """Return the nearest pose [rad] that the head can take, well within its limits."""
     return yaw, max(-0.6, min(0.42, pitch))
 
 
@@ -58,7 +58,7 @@ EVERY_COMBINATION: Sequence[Case] = [
     for latency in LATENCIES
 ]
 AS_REQUIRED = 0.85
-"""The share that settles as is asked where the robot falls short as a real one does: 73 of 84 were measured."""
+"""The share of heads that must settle as required if the robot is as imperfect as a real one; 73 of 84 did."""
 
 
 @pytest.mark.soak

@@ -12,7 +12,7 @@ from lumen.language.events import Event
 
 
 def through(outputs: Mapping[str, Any], source: Any = "sonar.left", **more: Any) -> Regulator:
-    """A controller whose output Y, from 0 to 1, is a tenth of its input X; and Z the rest of it to 1."""
+    """Return a controller whose output Y, from 0 to 1, is a tenth of its input X; Z is the rest of it to 1."""
     terms = {"Lo": {"constant": 0}, "Hi": {"constant": 1}}
     data = {
         "inputs": {
@@ -28,7 +28,7 @@ def through(outputs: Mapping[str, Any], source: Any = "sonar.left", **more: Any)
 
 
 def told(regulator: Regulator, xs: list[float], every: float = 0.2) -> list[Signals]:
-    """The signals after messages with these numbers, one every `every` [s]."""
+    """Return the signals after messages with these numbers, one every `every` [s]."""
     found = []
     for i, x in enumerate(xs):
         regulator.take("sonar", {"left": x})

@@ -1,4 +1,4 @@
-"""A museum's two controllers, whole: how loud the robot speaks by how far the visitor is, and how bright a lamp is."""
+"""A museum's two controllers in an exhibition: the volume by the visitor's distance, and the brightness of a lamp."""
 
 from itertools import pairwise
 from pathlib import Path
@@ -155,7 +155,7 @@ class Hall:
             self.robot.advance(0.02)
 
     def edit(self, old: str, new: str) -> None:
-        """The file of the light is saved with that edit."""
+        """Save the file of the light with that edit."""
         file = self.folder / "fuzzy" / "light.yaml"
         assert old in file.read_text("utf-8")
         file.write_text(file.read_text("utf-8").replace(old, new), "utf-8")

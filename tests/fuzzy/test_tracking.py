@@ -26,7 +26,7 @@ def head() -> Controller:
 
 @pytest.fixture
 def plain(head: Controller) -> Tracker:
-    """The rule alone: one look, no magnification."""
+    """A tracker with the rules alone: one look, no magnification."""
     return Tracker(replace(head, tracking=replace(head.tracking, looks=1, zoom=1.0)), HEAD)
 
 

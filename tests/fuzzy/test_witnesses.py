@@ -1,4 +1,4 @@
-"""scikit-fuzzy on the head controller: a second witness, whose integration is its own."""
+"""scikit-fuzzy on the head controller: a second oracle, with its own integration."""
 
 import numpy as np
 import pytest
@@ -10,7 +10,7 @@ POINTS = 20_001
 
 
 def scikit_fuzzy(head: Controller, output: str, x: float) -> float:
-    """The centroid of an output of one input, by scikit-fuzzy's own functions."""
+    """Return the centroid of an output of one input, by scikit-fuzzy's own functions."""
     variable = head.outputs[output]
     universe = np.linspace(variable.minimum, variable.maximum, POINTS)
     whole = np.zeros(POINTS)

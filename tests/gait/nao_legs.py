@@ -1,4 +1,4 @@
-"""The legs of the shipped robots' models, as they are read, and others that are drawn up."""
+"""The legs of the shipped robots' models, as they are read, and legs made up for tests."""
 
 from dataclasses import replace
 

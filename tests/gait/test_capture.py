@@ -31,7 +31,7 @@ def test_it_lands_farther_the_longer_the_body_falls() -> None:
 
 
 def tilted(angle: float) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
-    """Forward, left and up in the frame of a torso that leans forward by that [rad]."""
+    """Return the axes forward, left and up of a torso that leans forward by `angle` [rad]."""
     c, s = cos(angle), sin(angle)
     return np.array([[c, 0.0, s], [0.0, 1.0, 0.0], [-s, 0.0, c]])
 

@@ -29,7 +29,7 @@ def walking(goal: Pose) -> Gait:
 
 
 class Walked:
-    """Lets a gait run to its end; `haste` is how fast joints turned, at most, as a part of the fastest they can."""
+    """Runs a gait to its end; `haste` is the greatest speed of a joint, as a part of its limit."""
 
     def __init__(self, gait: Gait, stop: int = LIMIT) -> None:
         angles, self.ticks, self.haste, self.lifted = dict(gait.angles), 0, 0.0, set[str]()

@@ -13,7 +13,7 @@ FEET: Feet = {"L": beside(HERE, "L", GaitParameters()), "R": beside(HERE, "R", G
 
 
 def standing(feet: Feet) -> dict[str, float]:
-    """The angles of legs on these feet [rad]."""
+    """Return the angles of legs on these feet [rad]."""
     return dict(Gait(NAO_LEGS, feet, Pose(), mass, GaitParameters()).angles)
 
 
