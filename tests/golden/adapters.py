@@ -56,7 +56,7 @@ __all__ = [
 
 
 def command_text(command: Any) -> Any:
-    """A command as JSON data, as the journal has it; of a motion and a style only the names."""
+    """Return a command as JSON data, as in the journal; a motion and a style only by name."""
     match command:
         case Perform(motion):
             return {"Perform": motion.name}
@@ -83,7 +83,9 @@ def told_to_robots(tell: Callable[[float, str, str, Any], None]) -> Iterator[Non
 
 
 def robot_commands(project: lumen.Project, story: str) -> list[tuple[float, str, str, Any]]:
-    """The commands to the robot in a story, which is rehearsed; the last entry is when it ended, and how."""
+    """Return the commands to the robot in a rehearsed story; the last entry is the end, with the failure if there was
+    one.
+    """
     told: list[tuple[float, str, str, Any]] = []
     with told_to_robots(lambda *command: told.append(command)):
         played = rehearse(project, project.stories[story])
@@ -91,7 +93,7 @@ def robot_commands(project: lumen.Project, story: str) -> list[tuple[float, str,
 
 
 def alive(project: lumen.Project, style: str, seconds: float) -> Iterator[dict[str, float]]:
-    """The offset of each joint by life [rad] at 50 Hz, while the robot hears, speaks and is led as in a visit."""
+    """Yield the offset of each joint by life [rad] at 50 Hz, while the robot hears, speaks and is led as in a visit."""
     layer, body = LifeLayer(project.body, seed=7), project.body
     layer.live(Live(project.life[style], merged(project.gestures)))
     free = frozenset(WHOLE_BODY)
@@ -128,7 +130,7 @@ class Replayed(NamedTuple):
 
 
 def journal_lines(file: Path) -> tuple[bytes, bool, list[bytes], list[bytes], bool]:
-    """The header of a journal written again, whether it is whole, its lines, the same lines written again.
+    """Return the header of a journal written again, whether it is whole, its lines, the same lines written again.
 
     The last is whether these are read as they are written after they were packed into frames.
     """
@@ -140,7 +142,7 @@ def journal_lines(file: Path) -> tuple[bytes, bool, list[bytes], list[bytes], bo
 
 
 def replayed(file: Path, bundles: KeptBundles) -> Iterator[Replayed]:
-    """The entries of a journal, each taken again with the files that ran then."""
+    """Yield the entries of a journal, each taken again with the files that ran then."""
     for row in replay(read_journal(file).entries, bundles.machine):
         now = row.now
         after = serialize(row.machine, row.after) if row.machine and row.after else None
@@ -164,7 +166,7 @@ def read_positions(file: Path, event: str) -> list[int]:
 
 
 def reloaded_to(file: Path, bundles: KeptBundles) -> lumen.Project:
-    """The files that ran when a file of a journal was written."""
+    """Return the project that ran when a file of a journal was written."""
     project = bundles.load(read_journal(file).header.bundle)
     assert project
     return project
@@ -173,7 +175,7 @@ def reloaded_to(file: Path, bundles: KeptBundles) -> lumen.Project:
 def forked(
     file: Path, position: int, bundles: KeptBundles, event: lumen.Event | None, saved: lumen.Project | None
 ) -> tuple[list[dict[str, Any]], list[dict[str, Any]], str]:
-    """The entries from a position of a journal on, those that would have been, and the trouble that ended these."""
+    """Return a journal's entries from a position on, those of the fork, and the trouble that ended the fork."""
     found = fork(read_journal(file).entries, position, bundles.project, takes, event=event, saved=saved)
     return list(found.was), list(found.would), found.trouble
 
@@ -187,7 +189,7 @@ def continued(
 
 
 def recovered(root: Path, project: lumen.Project, now: float) -> list[str]:
-    """How a start at `now` [s since 1970] continues from the home of a run that ended before."""
+    """Return how a start at `now` [s since 1970] continues from the home of a run that ended before."""
     home = Home(root / ".lumen")
     assert home.hold()
     records = RunRecords(home)

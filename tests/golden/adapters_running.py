@@ -1,4 +1,4 @@
-"""How the goldens of running exhibitions see inside: all that is no public name is reached here and nowhere else.
+"""Internals of the engine for the goldens of running exhibitions: only this module uses names that are not public.
 
 After a rename or a move, change it here and re-record nothing: `NAMES` maps the new name of a class to the recorded
 one.
@@ -22,7 +22,7 @@ from lumen.run.rehearsal import Rehearsal, rehearse
 from lumen.run.setup import set_up
 
 NAMES: dict[str, str] = {}
-"""Of a class that has another name by now: that in the recordings."""
+"""The recorded name of each class that has another name by now."""
 PARTS = {
     "AlertPart": "alerts",
     "BrainPart": "brain",
@@ -92,18 +92,18 @@ def project_of(root: Path, robot: str = "") -> Project:
 
 
 def rehearsed(project: Project, story: str) -> Rehearsal:
-    """A story played as a reload tries it, and as `lumen test` plays it."""
+    """Rehearse a story as a reload and `lumen test` do."""
     return rehearse(project, next(iter(stories_of(project, story))))
 
 
 def rehearsed_on(project: Project, story: str, robot: str) -> Rehearsal:
-    """The same on a robot of that name, as `lumen play` and the search for fits do."""
+    """Rehearse a story on a robot of that name, as `lumen play` and the search for fits do."""
     found = next(iter(stories_of(project, story)))
     return rehearse(project, found, set_up(robot, project, "max", found))
 
 
 def nao() -> type:
-    """The NAO for dm_control."""
+    """Return the NAO for dm_control."""
     from lumen.features.simulation.entity import Nao
 
     return Nao
@@ -127,7 +127,7 @@ def end(node: Node) -> None:
 
 @contextmanager
 def looked_at(ticked: Callable[[Node], None]) -> Iterator["Traces"]:
-    """While it lasts, each node that has lived through a tick and claimed what it is, is handed over."""
+    """Call `ticked` with each node after a tick, once it has claimed its parts; yield the subscriptions and threads."""
     tick, subscribe, start = Node.tick, ValidatedBus.subscribe, threading.Thread.start
     traces = Traces()
 
@@ -236,7 +236,7 @@ def _empty(cell: Any) -> bool:
 
 
 def main(arguments: list[str]) -> int:
-    """The command line, in this process."""
+    """Run the command line in this process, and return its exit code."""
     from lumen.cli.main import main
 
     sys.argv = ["lumen", *arguments]

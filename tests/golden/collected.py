@@ -80,7 +80,7 @@ def _written(body: list[ast.stmt], name: str) -> Iterator[str]:
 
 
 def floors() -> Counts:
-    """Return how many there must be at least."""
+    """Return the least number of functions, tests and cases of each folder."""
     found: Counts = json.loads(FLOORS.read_text("utf-8"))
     return found
 

@@ -18,7 +18,7 @@ PROGRAM = f'#!/bin/sh\nread -r line\necho "$line" >> {TOLD}\n'
 
 
 def small(folder: Path, *, robots: int = 1, more: str = "") -> Path:
-    """The small exhibition in a new folder; `more` is appended to its lumen.yaml."""
+    """Write the small exhibition into a new folder, and return it; `more` is appended to its lumen.yaml."""
     shutil.copytree(PROJECTS / "minimal", folder)
     main = folder / "lumen.yaml"
     text = main.read_text("utf-8")
@@ -42,7 +42,7 @@ def broker() -> Iterator[str]:
 
 
 def plain(text: str, *folders: Path) -> str:
-    """A text without what no one can fix: places, ports, processes, times of day and how long things took."""
+    """Return a text without what differs between runs: paths, ports, numbers of processes, times and durations."""
     for number, folder in enumerate(folders, 1):
         text = text.replace(str(folder), "<folder>" if number == 1 else f"<folder {number}>")
     for pattern, instead in UNFIXED:

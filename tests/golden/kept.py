@@ -22,7 +22,7 @@ def bundles(robot: str) -> KeptBundles:
 
 
 def journals() -> dict[str, list[Path]]:
-    """The files of each recorded journal, in their order, by its name."""
+    """Return the files of each recorded journal, in their order, by its name."""
     found: dict[str, list[Path]] = {}
     for file in sorted(JOURNALS.rglob("*.journal")):
         found.setdefault(str(file.parent.relative_to(JOURNALS)), []).append(file)

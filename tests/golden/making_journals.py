@@ -44,7 +44,7 @@ ASKED = "lumen.NAO.operator.request"
 
 
 def copied(name: str, folder: Path) -> Path:
-    """A copy of a frozen project, or of the duet, that may be written."""
+    """Copy a frozen project, or the duet, into `folder`; return the copy, which may be changed."""
     shutil.copytree(PROJECTS / name, folder / name)
     return folder / name
 
@@ -59,7 +59,7 @@ def edited(root: Path, file: str, *changes: tuple[str, str]) -> None:
 
 
 def played(name: str, story: str) -> Callable[[Path], Path]:
-    """A story, from its beginning to its end."""
+    """Return a function that plays a story from its beginning to its end."""
 
     def play(folder: Path) -> Path:
         root = copied(name, folder)
@@ -71,7 +71,7 @@ def played(name: str, story: str) -> Callable[[Path], Path]:
 
 
 def duet(folder: Path) -> Path:
-    """Two robots in one hall."""
+    """Play a visit with two robots in one hall."""
     root = copied("duet", folder)
     assert main(["run", str(root), "--story", "visitor", "--robot", "recording", "--speed", "max"]) == 0
     return root
@@ -98,7 +98,7 @@ def motion_replaced(root: Path) -> None:
 
 
 def reload(folder: Path) -> Path:
-    """A text that changes, an active state that gets another name, and a motion that plays and is another then."""
+    """Reload a changed text, another name of the active state, and another version of a motion that plays."""
     root = copied("tour", folder)
     store = SnapshotStore(Home(root / STATE))
     with lumen.open(root, story="visitor") as exhibition:
@@ -117,7 +117,7 @@ def reload(folder: Path) -> Path:
 
 
 def goto(folder: Path) -> Path:
-    """An operator has states entered, by way of the bus."""
+    """Let an operator have states entered, over the bus."""
     root = copied("museum", folder)
     bus = lumen.bus.connect("memory://golden-goto")
     asker = lumen.bus.connect("memory://golden-goto")
@@ -135,7 +135,7 @@ def goto(folder: Path) -> Path:
 
 
 def forgotten(folder: Path) -> Path:
-    """A visitor is forgotten during their visit, and another one comes."""
+    """Forget a visitor during their visit, after which another one comes."""
     root = copied("tour", folder)
     with lumen.open(root) as exhibition:
         for name in ("Budi", "Dewi"):
@@ -154,9 +154,9 @@ def forgotten(folder: Path) -> Path:
 
 
 def killed(folder: Path) -> Path:
-    """A run that is killed in a visit, the next run, which resumes it, and a journal that is cut in a frame.
+    """Kill a run in a visit, let the next run resume it, and cut a journal in a frame.
 
-    The home that the first one left is kept, except its socket and its .gitignore.
+    The home that the first run left is kept, except its socket and its .gitignore.
     """
     root = copied("tour", folder)
     kill(root)
@@ -224,7 +224,7 @@ states:
 
 
 def invoked(folder: Path) -> Path:
-    """Behaviours that are invoked, answer, run into their time limit, and are left."""
+    """Invoke behaviours that answer, that run into their time limit, and that are left."""
     root = copied("minimal", folder)
     shutil.rmtree(root / "behaviors")
     (root / "behaviors").mkdir()
@@ -259,7 +259,7 @@ steps:
 
 
 def weekend(folder: Path) -> Path:
-    """Timers that run out days later; no tick is lived through in between."""
+    """Let timers run out days later, without a tick in between."""
     root = copied("museum", folder)
     (root / "behaviors/stories/weekend.yaml").write_text(WEEKEND, "utf-8")
     project = lumen.load(root)
@@ -289,7 +289,7 @@ JOURNALED: dict[str, Callable[[Path], Path]] = {
 
 
 class Collected(Observer):
-    """The first snapshot in which each state was just entered."""
+    """Keeps the first snapshot in which each state was just entered."""
 
     def __init__(self, machine: MachineDefinition) -> None:
         self.machine = machine
@@ -302,7 +302,7 @@ class Collected(Observer):
 
 
 def snapshots() -> None:
-    """A snapshot of every state of the tour, from the first story that enters it; else an operator had it entered."""
+    """Write a snapshot of every state of the tour, from the first story that enters it, else after an operator did."""
     project = lumen.load(PROJECTS / "tour")
     collected = Collected(project.machine)
     for story in project.stories.values():

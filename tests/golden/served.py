@@ -52,7 +52,7 @@ class Served:
             process.wait()
 
     def ask(self, method: str, path: str, data: Any = None, **headers: str) -> Answer:
-        """A request; `data` is its body, as JSON unless it is made of bytes."""
+        """Send a request, and return the answer; `data` is its body, as JSON unless it is bytes."""
         body = data if data is None or isinstance(data, bytes) else json.dumps(data).encode()
         named = {**(JSON if body else {}), **{name.replace("_", "-"): value for name, value in headers.items()}}
         connection = HTTPConnection("127.0.0.1", self.port, timeout=HANG)
@@ -76,7 +76,7 @@ class Served:
         return []
 
     def settled(self, condition: Callable[[dict[str, Any]], object]) -> dict[str, Any]:
-        """Return how the robot is, as it was asked after this was called, once that is so and it does nothing."""
+        """Return the first state after this call that fulfils the condition, and in which the robot does nothing."""
         heard: list[str] = []
         found: list[dict[str, Any]] = []
 
@@ -92,7 +92,7 @@ class Served:
 
     @contextmanager
     def listening(self, path: str) -> Iterator[list[tuple[str, Any]]]:
-        """The events of a stream, as they come."""
+        """Yield a list that receives the events of a stream as they come."""
         connection = HTTPConnection("127.0.0.1", self.port, timeout=HANG)
         connection.request("GET", path)
         answer = connection.getresponse()

@@ -13,7 +13,7 @@ from tests.golden.adapters_running import NAMES
 PATH = re.compile(r"\b(?:[A-Za-z_]\w*\.)+(?=[A-Za-z_])")
 """The module before a name: it may move."""
 FUNCTION = re.compile(r"<function (?:[\w<>]+\.)*(\w+) at 0x[0-9a-f]+>")
-"""A function as a default: only that there is one is promised."""
+"""A function as a default value: recorded is only that there is one."""
 WORD = re.compile(r"\b[A-Za-z_]\w*")
 UNSHOWN = {"__init__", "__call__", "__enter__", "__exit__", "__iter__", "__len__", "__getitem__", "__str__", "_build"}
 """Special methods that are part of an interface; `_build` has the arguments of a dm_control Entity."""
@@ -25,7 +25,7 @@ SPLIT = {"lumen.ports"}
 
 
 def offered(module: ModuleType) -> dict[str, Any]:
-    """The names of a module: those of `__all__`, else what is defined there or in modules of it."""
+    """Return the names of a module: those of `__all__`, else what is defined there or in modules of it."""
     names = None if module.__name__ in SPLIT else getattr(module, "__all__", None)
     if names is None:
         own = f"{module.__name__}."
@@ -35,7 +35,7 @@ def offered(module: ModuleType) -> dict[str, Any]:
 
 
 def described(name: str, value: Any, public: frozenset[type]) -> Iterator[str]:
-    """The lines about one name; `public` are the classes that have a name in public."""
+    """Yield the lines about one name; `public` are the classes that have a name in public."""
     if inspect.isclass(value):
         yield from _class(name, value, public)
     elif callable(value):

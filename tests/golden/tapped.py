@@ -62,7 +62,7 @@ def _forward(source: socket.socket, sink: socket.socket, kept: bytearray) -> Non
 
 
 def amqp_frames(data: bytes) -> Iterator[tuple[int, object]]:
-    """The frames of a client in AMQP, with where each ends, as pika reads them."""
+    """Yield the frames that a client of AMQP sent, each with the position of its end, as pika reads them."""
     from pika import frame
 
     at = 0

@@ -20,7 +20,7 @@ def write(file: Path, lines: Iterable[str]) -> None:
 
 
 def in_one_line(data: Any) -> str:
-    """JSON data in a line, its keys in the order of the data."""
+    """Return JSON data as a line, its keys in the order of the data."""
     return json.dumps(data, ensure_ascii=False, default=repr)
 
 
@@ -30,13 +30,13 @@ def rounded(value: float, digits: int) -> str:
 
 
 def digest(values: Iterable[str]) -> str:
-    """A short hash of texts: it changes if one of them does."""
+    """Return a short hash of texts: it changes if one of them does."""
     return sha256("\n".join(values).encode()).hexdigest()[:12]
 
 
 @cache
 def arithmetic() -> str:
-    """A fingerprint of this machine's exp, sin and numpy, which may differ in their last bit between processors."""
+    """Return a fingerprint of this machine's exp, sin and numpy; their last bits differ between processors."""
     import numpy as np
 
     grid = [number / 64 - 8 for number in range(1024)]
@@ -47,7 +47,7 @@ def arithmetic() -> str:
 
 
 def snapped(lines: list[str], recorded: Path, tolerance: float, pattern: str) -> list[str]:
-    """The lines, with the recorded number in place of each that is no farther from it than the tolerance.
+    """Return the lines, with the recorded number in place of each that is no farther from it than the tolerance.
 
     Another processor may compute another last bit. `pattern` matches a number; all other text must be equal.
     """

@@ -26,12 +26,12 @@ VISITS = {"tour": ("visitor", 42.0), "museum": ("visit", 42.0)}
 
 
 def key_of(project: lumen.Project, route: str) -> str:
-    """The key of a route."""
+    """Return the key of a route."""
     return project.routes[route].key.replace("{robot}", project.robot)
 
 
 def telemetry_of(project: lumen.Project) -> frozenset[str]:
-    """The keys whose messages replace each other: those of routes that keep one, or are sent every so often."""
+    """Return the keys whose messages replace each other: those of routes that keep one, or are sent every so often."""
     routes = [row for row in project.routes.values() if row.keep == 1 or row.every]
     keys = [key for row in routes for key in (row.key, row.alias) if key]
     return frozenset(key.replace("{robot}", project.robot) for key in keys)
@@ -49,7 +49,7 @@ class Transcript:
         self._seen: set[str] = set()
 
     def add(self, verb: str, key: str, said: Mapping[str, Any]) -> None:
-        """A message, or something else that happened under a key."""
+        """Add a message, or something else that happened under a key."""
         if int(self.now()) != self._second:
             self.sum_up()
         told = {name: steady(value) for name, value in said.items() if value not in ("", None)}
@@ -63,17 +63,17 @@ class Transcript:
         self.lines.append(f"{self.now():.2f} {line}")
 
     def receive(self, message: Message) -> None:
-        """A message as a subscriber receives it; of id and time only that they are there, of the body a digest."""
+        """Add a message as a subscriber receives it; of id and time only that they are there, of the body a digest."""
         said = message._asdict() | {"id": bool(message.id), "time": message.time > 0}
         said["body"] = digest([in_one_line(steady(message.body))])
         self.add("receive", said.pop("key"), said)
 
     def time(self) -> float:
-        """The exhibition's time [s]."""
+        """Return the exhibition's time [s]."""
         return self.now()
 
     def sum_up(self) -> None:
-        """End a second: what telemetry there was in it."""
+        """End a second: add a line that sums up its telemetry."""
         if self._order:
             counts = ", ".join(f"{number} {what}" for what, number in sorted(self._counts.items()))
             self.lines.append(f"second {self._second}: {counts}; {digest(self._order)}")
@@ -83,7 +83,7 @@ class Transcript:
 
 
 def steady(data: Any) -> Any:
-    """JSON data with `ID` in place of an id of a message, `DATE` and `NOW` in place of a time of day."""
+    """Return JSON data with `ID` in place of an id of a message, and `DATE` and `NOW` in place of a time of day."""
     match data:
         case dict():
             return {key: steady(value) for key, value in data.items()}
@@ -99,7 +99,7 @@ def steady(data: Any) -> Any:
 
 
 class TranscribedBus(Bus):
-    """A bus of which each call is written down."""
+    """A bus that writes down each call."""
 
     def __init__(self, bus: Bus, transcript: Transcript) -> None:
         self._bus, self._transcript = bus, transcript

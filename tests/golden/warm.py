@@ -41,9 +41,9 @@ END_TIMEOUT = 60.0
 
 
 class Done(NamedTuple):
-    """A command that has ended; `nodes` are what it was made of, each at the same moment.
+    """A command that has ended; `nodes` describes its nodes, all after the same number of ticks.
 
-    `left` are the threads that have not ended, of one that was looked at: others end with their process.
+    `left` are the threads that had not ended, if nodes were examined: other commands end with their process.
     """
 
     code: int
@@ -74,7 +74,7 @@ class Warm:
         ends: bool = True,
         env: Mapping[str, str] | None = None,
     ) -> Done:
-        """Run a command in a folder. With `nodes` so many are looked at, and it is ended then, unless it ends."""
+        """Run a command in a folder. With `nodes`, so many of its nodes are examined, and then ended if `ends`."""
         asked = {"arguments": [str(one) for one in arguments], "folder": str(folder), "nodes": nodes, "ends": ends}
         assert self._process.stdin
         assert self._process.stdout
@@ -96,14 +96,14 @@ class Warm:
 
 
 def environment(home: Path) -> dict[str, str]:
-    """An environment that is the same on each machine but for where programs are."""
+    """Return an environment that is the same on each machine but for where programs are."""
     kept = {name: value for name, value in os.environ.items() if not name.startswith(DROPPED)}
     places = {"XDG_STATE_HOME": str(home / "state"), "XDG_CACHE_HOME": str(home / "cache"), "HOME": str(home)}
     return {**kept, **PLAIN, **places, "OPENBLAS_NUM_THREADS": "1"}
 
 
 def _serve(home: Path) -> None:
-    """Run what is asked for on standard input, a line each, until that ends."""
+    """Run the commands that come on standard input, one a line, until it closes."""
     asked, answers = os.fdopen(os.dup(0), "r"), os.fdopen(os.dup(1), "w")
     nowhere = os.open(os.devnull, os.O_RDONLY)
     os.dup2(nowhere, 0)
@@ -185,7 +185,7 @@ class _Look:
 
 
 def _names(threads: Sequence[threading.Thread]) -> list[str]:
-    """Their names in order, without those of timers, which come and go as the machine is fast."""
+    """Return the names of threads, sorted; without timers, whose number depends on the speed of the machine."""
     return sorted(thread.name for thread in threads if not isinstance(thread, threading.Timer))
 
 

@@ -1,7 +1,7 @@
 """Imported by each Python that starts with this folder on its path: notes which programs it begins.
 
-A look at /proc misses what lives shortly; this does not. The notes are lines of JSON in the file that the environment
-names: who begins what.
+A look at /proc would miss programs that end soon. The notes are lines of JSON, who begins what, in the file that the
+environment names.
 """
 
 import _posixsubprocess

@@ -99,7 +99,7 @@ def visit(root: Path, name: str, project: lumen.Project, words: list[str]) -> Ta
 
 
 def lines(data: bytes, telemetry: frozenset[str]) -> list[str]:
-    """A line for each frame but those of telemetry, which are summed up."""
+    """Return a line for each frame, except telemetry, which is summed up."""
     transcript = Transcript(telemetry)
     for number, (verb, *words) in enumerate(frames(data)):
         if verb in ("message", "publish"):
@@ -120,7 +120,7 @@ def lines(data: bytes, telemetry: frozenset[str]) -> list[str]:
 
 
 def frames(data: bytes) -> Iterator[list[Any]]:
-    """The frames: a JSON array each, behind its length."""
+    """Yield the frames, each a JSON array after its length."""
     at = 0
     while at < len(data):
         (length,) = struct.unpack_from(">I", data, at)

@@ -33,7 +33,7 @@ HANG = 600.0
 PAUSE = 0.002
 SLOWER = 1000.0
 NO_HEARTBEAT = "?heartbeat=0"
-"""The clock by which it would beat is slow."""
+"""No heartbeat, since the clock by which it would beat is slow."""
 
 
 class LockstepBus(TranscribedBus):
@@ -92,7 +92,7 @@ def record(folder: Path) -> None:
 
 
 def visit(folder: Path, name: str, broker: RabbitMQ) -> None:
-    """Live through the visit of a project."""
+    """Play the visit of a project, and write its declarations and messages."""
     wire, watcher = TappedWire(broker.port), connect(broker.url + NO_HEARTBEAT, sender="watcher")
     watcher.subscribe("#", lambda message: None)
     real, began = time.monotonic, time.monotonic()
@@ -131,7 +131,7 @@ class FrameReader:
         self._count = 0
 
     def published(self) -> int:
-        """The number of messages sent so far."""
+        """Return the number of messages sent so far."""
         self._read()
         return self._count
 
@@ -141,7 +141,7 @@ class FrameReader:
         return messages
 
     def declared(self) -> list[str]:
-        """The requests to the broker except messages, sorted."""
+        """Return the requests to the broker except messages, sorted."""
         self._read()
         return sorted(self._declared)
 

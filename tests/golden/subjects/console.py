@@ -234,7 +234,7 @@ def _in(state: str) -> Callable[[dict[str, Any]], bool]:
 
 
 def _lines(project: Path, data: Any) -> list[str]:
-    """An object with a line for each key; its position is that of the last entry that was written, a moment later."""
+    """Return a line for each key of an object; the position is left out, since it is that of the last written entry."""
     fixed = _fixed({**data, "position": "…"} if isinstance(data, dict) and "position" in data else data)
     if not isinstance(fixed, dict):
         return [plain(_json(fixed), project)]

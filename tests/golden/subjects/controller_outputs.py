@@ -30,7 +30,7 @@ def record(folder: Path) -> None:
 
 
 def outputs(controller: Controller) -> list[str]:
-    """A line for each point of the grid: the inputs, then the outputs by one evaluation and by a batch."""
+    """Return a line for each point of the grid: the inputs, then the outputs by one evaluation and by a batch."""
     axes = [
         [each.minimum + (each.maximum - each.minimum) * step / STEPS for step in range(-1, STEPS + 2)]
         for each in controller.inputs.values()

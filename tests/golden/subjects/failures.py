@@ -77,7 +77,7 @@ class _Table:
         self._place, self._warm, self._count = place, warm, 0
 
     def mishap(self, name: str) -> Iterator[str]:
-        """The outcome of each role, for one robot and for two."""
+        """Yield the outcome of each role, for one robot and for two."""
         found: dict[str, list[str]] = {}
         for robots in (1, 2):
             for role in LINES if name == "nothing" else SOME[robots]:
@@ -88,7 +88,7 @@ class _Table:
             yield f"# {'; '.join(cases)}\n\n{outcome}"
 
     def refused(self) -> Iterator[str]:
-        """The outcome of options that are refused."""
+        """Yield the outcome of options that are refused."""
         for name, line in REFUSED.items():
             found: dict[str, list[str]] = {}
             for robots in (1,) if name in ALONE else (1, 2):
@@ -97,7 +97,7 @@ class _Table:
                 yield f"# {name}; {'; '.join(cases)}\n\n{outcome}"
 
     def after_a_good_run(self) -> Iterator[str]:
-        """Files that break between two starts."""
+        """Yield the outcomes of starts after a good run, if files broke in between."""
         for robots in (1, 2):
             for name in ("behavior-syntax", "main-syntax", "main-missing-behavior"):
                 for more in ((), ("--last-good",)):
@@ -108,7 +108,7 @@ class _Table:
                     yield f"# {_words(robots)}, whole, {told}\n\n{self._outcome(project, (*LINES['whole'], *more))}"
 
     def while_one_runs(self) -> Iterator[str]:
-        """A second start beside the first, whose folder it leaves alone."""
+        """Yield the outcomes of a second start beside the first, whose folder it leaves alone."""
         for robots in (1, 2):
             project = self._project(robots)
             home = project / ".lumen" / ("" if robots == 1 else "robots/ben")
@@ -150,7 +150,7 @@ def _alerts(project: Path) -> Iterator[str]:
 
 
 def _kept(project: Path) -> Iterator[str]:
-    """The files of `.lumen/`, with the text of those in JSON."""
+    """Yield the files of `.lumen/`, with the text of those in JSON."""
     home = project / ".lumen"
     if not home.is_dir():
         yield f"no folder .lumen{' but a file' if home.exists() else ''}"
@@ -163,7 +163,7 @@ def _kept(project: Path) -> Iterator[str]:
 
 
 def _journals(name: str) -> str:
-    """A name without the random end of a journal's."""
+    """Return the name of a file, for a journal without its random end."""
     return f"{name.rpartition('-')[0]}-<id>.journal" if name.endswith(".journal") else name
 
 

@@ -1,4 +1,4 @@
-"""Third-party packages, and dear ones of Python, that three commands import: each in a process of its own.
+"""Third-party packages, and expensive ones of Python, that three commands import, each in a process of its own.
 
 The engine's own modules are not listed, since they move; neither is what Python imports before it runs anything.
 """

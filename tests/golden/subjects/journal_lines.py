@@ -1,6 +1,6 @@
 """The recorded journals, each entry read and written again: the lines are what they were, to the byte.
 
-A line that is not is written as it was and as it is.
+A line that differs is written as it was and as it is.
 """
 
 from hashlib import sha256
@@ -23,7 +23,7 @@ def record(folder: Path) -> None:
 
 
 def paragraph(file: Path) -> list[str]:
-    """The header, whether the file is whole, how many lines it has, their digest, and what differs."""
+    """Return the header, whether the file is whole, the number of lines, their digest, and the lines that differ."""
     header, whole, lines, again, read = journal_lines(file)
     was = [line + b"\n" for line in lines]
     differs = [f"was {old!r}\nis  {new!r}" for old, new in zip(was, again, strict=True) if old != new]

@@ -25,7 +25,7 @@ def record(folder: Path) -> None:
 
 
 def steps(file: Path, kept: KeptBundles) -> Iterator[str]:
-    """The lines of a file of a journal."""
+    """Yield the lines of a file of a journal."""
     before: dict[str, Any] = {}
     alike: list[tuple[Replayed, str]] = []
     for row in replayed(file, kept):
@@ -51,7 +51,7 @@ def steps(file: Path, kept: KeptBundles) -> Iterator[str]:
 
 
 def step_line(row: Replayed) -> str:
-    """An entry and what came of it."""
+    """Return an entry and its outcome as a line."""
     how, what = _what(row)
     words = [str(row.position), how, what, f"{row.entry['at']!r}"]
     words += [f"-{state}" for state in row.exited] + [f"+{state}" for state in row.entered]
@@ -61,7 +61,7 @@ def step_line(row: Replayed) -> str:
 
 
 def together(alike: list[tuple[Replayed, str]]) -> str:
-    """Entries of one kind that follow each other and change nothing: a line, with a digest of all times and digests."""
+    """Return one line for consecutive entries of one kind that change nothing, with a digest of their times."""
     (first, whole), (last, _) = alike[0], alike[-1]
     if first is last:
         return f"{step_line(first)} {whole}"
@@ -72,6 +72,6 @@ def together(alike: list[tuple[Replayed, str]]) -> str:
 
 
 def _what(row: Replayed) -> tuple[str, str]:
-    """How it came and what it is: `heard face`, `jump start`."""
+    """Return how an entry came and what it is: `heard face`, `jump start`."""
     how = next(iter(row.entry))
     return how, row.entry[how]

@@ -1,4 +1,4 @@
-"""Where each motion of the frozen projects has each joint, at 50 Hz, for each body that has a motion of its own.
+"""The angle of each joint in each motion of the frozen projects, at 50 Hz, for each body that has a motion of its own.
 
 A line for each second holds a digest of all fifty moments, and the angles [rad; hands 0..1] at the first of them.
 """
@@ -31,7 +31,7 @@ def record(folder: Path) -> None:
 
 
 def angles(samples: list[dict[str, float]]) -> list[str]:
-    """A line of the joints' names, then one for each second."""
+    """Return a line of the joints' names, then one for each second."""
     joints = sorted({joint for sample in samples for joint in sample})
     rows = [[rounded(sample.get(joint, 0.0), DIGITS) for joint in joints] for sample in samples]
     seconds = range(0, len(rows), RATE)

@@ -63,10 +63,10 @@ class _Statue:
     """A robot from outside Lumen, which does nothing."""
 
     def start(self, id: str, command: Any) -> None:
-        """It is never done."""
+        """Do nothing: no command is ever done."""
 
     def cancel(self, id: str) -> None:
-        """There is nothing to cancel."""
+        """Do nothing: there is nothing to cancel."""
 
     def poll(self) -> list[Any]:
         return []

@@ -1,8 +1,8 @@
 """Which programs each command begins: their command lines, by who begins them.
 
-Each Python of a command notes what it begins (`noting/`), so that also what lives shortly is there. How often is left
-out, for a process that waits to be used again may be begun anew on a slow machine; so are places, numbers of open files
-and ports.
+Each Python of a command notes what it begins (`noting/`), so that programs that end soon are included. Their number is
+left out, since a process that waits to be used again may be begun anew on a slow machine; so are places, numbers of
+open files, and ports.
 """
 
 import json
@@ -27,7 +27,7 @@ NOTING = ROOT / "tests/golden/noting"
 NOTES = "GOLDEN_NOTES"
 WORKER = "spawn_main"
 CONSOLE = "lumen console"
-"""Only what this begins is kept of a visit: when the exhibition beside it judges files depends on the machine."""
+"""Of a visit, only the programs that this begins are kept: when the exhibition judges files depends on the machine."""
 QUICK = ("--robot", "recording", "--speed", "max", "--for", "1s", "--bus", "memory://")
 PYTHON = "python"
 NUMBERS = re.compile(r"(?<=[=(])\d+(?=[,)])")
@@ -64,7 +64,7 @@ def _all(here: Path) -> Iterator[tuple[str, list[str]]]:
 
 
 def _run(words: Sequence[str], here: Path, env: dict[str, str]) -> None:
-    """Run it to its end, or until it has begun its workers, whose work is long."""
+    """Run a command to its end, or until it has begun its workers, whose work is long."""
     command = [sys.executable, "-m", "lumen", *words]
     notes = Path(env[NOTES])
     with Guarded(

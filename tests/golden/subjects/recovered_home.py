@@ -36,7 +36,7 @@ def record(folder: Path) -> None:
 
 
 def put(folder: Path) -> Path:
-    """A copy of the project, with that home."""
+    """Write a copy of the project, with that home, into `folder`; return it."""
     root = folder / "tour"
     shutil.copytree(PROJECTS / "tour", root)
     shutil.copytree(HOME, root / ".lumen")
@@ -44,7 +44,7 @@ def put(folder: Path) -> Path:
 
 
 def contents() -> list[str]:
-    """The files of the home with their sizes, and the content of those that are JSON."""
+    """Return the files of the home with their sizes, and the content of those that are JSON."""
     lines = []
     for file in sorted(path for path in HOME.rglob("*") if path.is_file()):
         data = file.read_bytes()

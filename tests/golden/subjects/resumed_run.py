@@ -48,7 +48,7 @@ def edit(root: Path, change: Callable[[str], str]) -> None:
 
 
 def started(root: Path, *options: str) -> Iterator[str]:
-    """The output of `lumen run`, without the parts that depend on the machine."""
+    """Yield the output of `lumen run`, without the parts that depend on the machine."""
     now = json.loads((HOME / "alive.json").read_text("utf-8"))["time"] + LATER
     out, errors = StringIO(), StringIO()
     words = ["run", str(root), "--robot", "recording", "--speed", "max", "--for", "45s", "--reload", "off", *options]

@@ -53,7 +53,7 @@ def resumed(project: lumen.Project, frozen: dict[str, Any], policy: Policy) -> I
 
 
 def step_lines(step: Step, begins: float) -> Iterator[str]:
-    """A step: its time since the start [s], event, states left and entered, and commands."""
+    """Yield the lines of a step: its time since the start [s], event, states left and entered, and commands."""
     event = step.event.name if step.event else "start"
     ways = [f"-{state}" for state in step.exited] + [f"+{state}" for state in step.entered]
     yield " ".join([f"  {step.snapshot.at - begins:.6f} {event}", *ways])

@@ -19,6 +19,6 @@ def record(folder: Path) -> None:
 
 
 def lines(project: lumen.Project, story: str) -> list[str]:
-    """The commands of a story: time [s], verb, id and command."""
+    """Return the commands of a story: time [s], verb, id and command."""
     told = robot_commands(project, story)
     return [f"{time:.3f} {verb} {id or '-'} {in_one_line(command)}" for time, verb, id, command in told]

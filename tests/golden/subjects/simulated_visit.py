@@ -20,7 +20,7 @@ SECONDS = 20.0
 EVERY = 0.5
 DIGITS = 3
 TOLERANCE = 0.02
-"""[rad; hands 0..1; m]"""
+"""The greatest accepted difference [rad; hands 0..1; m]."""
 NUMBER = r"-?\d+\.\d{3}\b"
 
 
@@ -33,7 +33,7 @@ def record(folder: Path) -> None:
 
 
 def visit(root: Path) -> Iterator[str]:
-    """The lines of a visit: commands as they are asked for, and angles."""
+    """Yield the lines of a visit: commands as they are asked for, and angles."""
     told: list[Any] = []
     with lumen.open(root, robot="simulation", story="visitor") as exhibition:
         exhibition.observe(lambda step: told.extend(step.commands))

@@ -26,7 +26,7 @@ RECORDING = ("--robot", "recording")
 
 
 class Start(NamedTuple):
-    """A way to start: its name, its options, on which bus, with how many robots."""
+    """A way to start; `more` is appended to lumen.yaml, and `nodes` (0: one for each robot) are examined."""
 
     name: str
     options: Sequence[str]
@@ -87,7 +87,7 @@ def record(folder: Path) -> None:
 
 @contextmanager
 def _fake_nao() -> Iterator[str]:
-    """A NAOqi in a process of its own; its address."""
+    """Run a NAOqi in a process of its own; yield its address."""
     with Guarded([sys.executable, "-m", "tests.features.naoqi"], cwd=ROOT, stdout=PIPE, text=True) as process:
         assert process.stdout
         yield process.stdout.readline().split()[-1]
