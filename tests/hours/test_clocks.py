@@ -1,4 +1,4 @@
-"""Clocks that are set, engines that were away, files that are saved: what becomes of times of day."""
+"""Times of day if a clock is set, an engine was away, or files are saved."""
 
 from datetime import UTC, datetime
 from types import SimpleNamespace
@@ -30,7 +30,7 @@ def when(text: str) -> float:
 
 
 def overdue(machine: Machine, snapshot: Snapshot, now: float = 0.0) -> Snapshot:
-    """The snapshot after everything has come that is due until then."""
+    """Return the snapshot after everything has come that is due until then."""
     found = [snapshot]
     for taken in elapse(machine, lambda: found[-1], now):
         found.append(taken.snapshot)  # noqa: PERF401 - the next one needs it

@@ -1,4 +1,4 @@
-"""Hours in which nothing happens are passed over, and nothing is otherwise for it."""
+"""Hours in which nothing happens are skipped, and the results are the same."""
 
 from pathlib import Path
 

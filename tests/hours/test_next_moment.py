@@ -20,15 +20,16 @@ ZONES = (
 DAYS = (
     date(2026, 3, 29), date(2026, 10, 25), date(2011, 12, 30), date(2018, 11, 4), date(2024, 2, 29), date(2026, 4, 5),
 )  # fmt: skip
-"""Nights that some of these zones skip or repeat something of, and a day of a leap year."""
+"""Nights in which some of these zones skip or repeat hours or days, and a day of a leap year."""
 
 WATCHED = timedelta(days=9)
 
 
 def watched(wanted: Schedule, after: datetime, zone: ZoneInfo) -> datetime | None:
-    """The first minute later than `after` in which the clock shows a time of the schedule for the first time.
+    """Return the first minute later than `after` in which the clock shows a time of the schedule for the first time.
 
-    It looks at the clock from long before, and ticks off each time that was shown or passed over.
+    Without such a minute within `WATCHED`, None is returned. The search begins two days earlier, and notes each time that was
+    shown or skipped.
     """
     minute = after.replace(second=0, microsecond=0) - timedelta(days=2)
     furthest = minute.astimezone(zone).replace(tzinfo=None)

@@ -9,6 +9,6 @@ ENTERING = "entering callables"
 
 
 def ceilings() -> dict[str, int]:
-    """All rows of ceilings.yaml."""
+    """Return all rows of ceilings.yaml: the name of each figure, and its greatest value."""
     found = yaml.safe_load(Path(__file__).with_suffix(".yaml").read_text(encoding="utf-8"))
     return {str(name): int(value) for name, value in found.items()}

@@ -31,7 +31,7 @@ class Watch:
         self._given: dict[int, list[Any]] = defaultdict(list)
 
     def entered(self, root: object) -> list[str]:
-        """The callables that have entered objects within reach of `root`: `Class.attribute: callable`, sorted."""
+        """Return the callables that have entered objects within reach of `root`: `Class.attribute: callable`."""
         found = set()
         reached = _reachable(root, self._package)
         for key, (thing, before) in self._made.items():
@@ -53,7 +53,7 @@ class Watch:
         return self._own.get((id(thing), name)) is value
 
     def taking(self, method: Callable[..., Any]) -> Callable[..., Any]:
-        """A method whose calls with callables are remembered."""
+        """Return a method whose calls with callables are remembered."""
 
         @wraps(method)
         def call(thing: object, *arguments: Any, **named: Any) -> Any:
@@ -63,7 +63,7 @@ class Watch:
         return call
 
     def constructing(self, constructor: Callable[..., None]) -> Callable[..., None]:
-        """A constructor after which the callables of the new object are remembered."""
+        """Return a constructor after which the callables of the new object are remembered."""
 
         @wraps(constructor)
         def construct(thing: object, *arguments: Any, **named: Any) -> None:
@@ -78,7 +78,7 @@ class Watch:
         return construct
 
     def setter(self) -> Callable[[object, str, Any], None]:
-        """A `__setattr__` that remembers the callables that objects give to themselves."""
+        """Return a `__setattr__` that remembers the callables that objects give to themselves."""
 
         def set_attribute(thing: object, name: str, value: Any) -> None:
             object.__setattr__(thing, name, value)
@@ -122,9 +122,9 @@ def _is_in(module: str, package: str) -> bool:
 
 
 def _classes(package: str) -> list[type]:
-    """The classes of the loaded modules of the package, bases after those that inherit from them.
+    """Return the classes of the loaded modules of the package, bases after those that inherit from them.
 
-    Without classes whose metaclass is written in C: their attributes can't be watched.
+    Classes whose metaclass is written in C are left out: their attributes can't be watched.
     """
     modules = [module for name, module in list(sys.modules.items()) if _is_in(name, package)]
     defined = {
@@ -163,7 +163,7 @@ def _elements(value: object) -> list[Any]:
 
 
 def _callables(thing: object) -> dict[str, list[Any]]:
-    """The callables in each attribute of an object, itself or in its list or table."""
+    """Return the callables in each attribute of an object, itself or in its list or table."""
     found = {
         name: [each for each in [value, *_elements(value)] if _is_callable(each)]
         for name, value in _attributes(thing).items()
@@ -172,7 +172,7 @@ def _callables(thing: object) -> dict[str, list[Any]]:
 
 
 def _reachable(root: object, package: str) -> dict[int, object]:
-    """The objects that can be reached through attributes, collections, methods and closures; their ids as keys."""
+    """Return the objects within reach through attributes, collections, methods and closures, by their ids."""
     found: dict[int, object] = {}
     waiting = [root]
     while waiting:
@@ -195,7 +195,7 @@ def _reachable(root: object, package: str) -> dict[int, object]:
 
 
 def _declaring(kind: type, name: str) -> str:
-    """The class that declares an attribute in its body, else the class of the object."""
+    """Return the class that declares an attribute in its body, else the class of the object."""
     return next((each.__name__ for each in kind.__mro__ if name in vars(each)), kind.__name__)
 
 

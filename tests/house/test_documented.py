@@ -18,7 +18,7 @@ BLOCK = re.compile(r"(?m)^```[\s\S]*?^```$")
 
 
 def commands(page: Path) -> Iterator[str]:
-    """Every `lumen …` of a page: between backticks, in an indented line, behind a `$`."""
+    """Yield every `lumen …` of a page: between backticks, in an indented line, behind a `$`."""
     text = page.read_text(encoding="utf-8")
     yield from re.findall(r"(?m)^\$ (lumen .*)$", text)
     prose = BLOCK.sub("", text)
@@ -27,7 +27,7 @@ def commands(page: Path) -> Iterator[str]:
 
 
 def can_be_typed(command: str) -> bool:
-    """Whether a verb's own parser takes the rest of a command; for a placeholder in capitals a number does."""
+    """Return whether a verb's own parser accepts the rest of a command, with a number for a placeholder in capitals."""
     words = shlex.split(re.split(r" [|>&] ?| && |;| 2>", command)[0], comments=True)[1:]
     words = ["1" if re.fullmatch("[A-Z]+", word) else word for word in words if not word.startswith("…")]
     if not words or words[0].startswith("-") or words[0] == "1":

@@ -84,7 +84,7 @@ def test_classes_are_as_before_when_they_are_no_longer_watched() -> None:
 
 
 def entering_callables() -> list[str]:
-    """The callables that enter the parts of an exhibition from their constructors to the end of its first tick."""
+    """Return the callables that enter an exhibition's parts between their constructors and the first tick's end."""
     lumen.open(ROOT).close()  # loads the modules whose classes are watched
     with watched() as watch, lumen.open(ROOT) as exhibition:
         exhibition.tick()

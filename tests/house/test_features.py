@@ -1,4 +1,4 @@
-"""The figures of features, of a small house of which everything can be counted by hand."""
+"""The figures of features, for a small package of which everything can be counted by hand."""
 
 import ast
 

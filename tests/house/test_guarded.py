@@ -47,7 +47,7 @@ Start = Callable[..., Guarded[str]]
 
 @pytest.fixture
 def start(tmp_path: Path) -> Start:
-    """Starts Python in `tmp_path`, which is in the environment of all child processes."""
+    """A function that starts Python in `tmp_path`, which is in the environment of all child processes."""
     environment = {**os.environ, "PYTHONPATH": str(ROOT), "TMPDIR": str(tmp_path)}
 
     def begin(*words: str, folder: Path = tmp_path) -> Guarded[str]:
@@ -57,7 +57,7 @@ def start(tmp_path: Path) -> Start:
 
 
 def left(folder: Path) -> list[str]:
-    """The processes in whose environment the folder stands, and its folders in which they worked."""
+    """Return the processes whose environment names the folder, and the folders in it in which they worked."""
     mark = str(folder)
     if Path("/proc").is_dir():
         processes = [str(process) for process in Path("/proc").glob("[0-9]*") if mark in environment(process)]
@@ -96,7 +96,7 @@ def test_or_ends_otherwise(end: str, start: Start, tmp_path: Path) -> None:
 
 
 def test_sessions_that_are_killed_or_interrupted_leave_nothing(start: Start, tmp_path: Path) -> None:
-    """Side by side, since each takes as long as xdist waits for its worker."""
+    """The sessions run at the same time, since each takes as long as xdist waits for its worker."""
     sessions = [begun(start, tmp_path / name, willing) for name, willing in (("a", False), ("b", True), ("c", False))]
     for session in sessions:
         until((session.folder / "started").exists)
@@ -118,7 +118,7 @@ class Session(NamedTuple):
 
 
 def begun(start: Start, folder: Path, willing: bool) -> Session:
-    """A session of pytest with one worker, in which a test does not end."""
+    """Return a session of pytest with one worker, in which a test does not end."""
     folder.mkdir()
     (folder / "test_inner.py").write_text(f"WILLING = {willing}\n" + STUBBORN)
     words = ["-m", "pytest", "-n", "1", "-p", "no:cacheprovider", "-c", os.devnull, "test_inner.py"]
@@ -126,7 +126,7 @@ def begun(start: Start, folder: Path, willing: bool) -> Session:
 
 
 def test_programs_end_in_time_and_say_how() -> None:
-    """Like the functions of the standard library that it replaces."""
+    """They behave like the functions of the standard library that they replace."""
     done = run_guarded(["cat"], input="hello", capture_output=True, text=True, timeout=HANG)
     assert (done.returncode, done.stdout, done.stderr) == (0, "hello", "")
     with pytest.raises(TimeoutExpired):

@@ -17,7 +17,7 @@ CONFIG = ROOT / ".pre-commit-config.yaml"
 
 
 def hooks() -> dict[str, dict[str, Any]]:
-    """Each hook by its id, as pre-commit reads it."""
+    """Return each hook by its id, as pre-commit reads it."""
     (local,) = load_config(str(CONFIG))["repos"]
     assert local["repo"] == "local"
     return {hook["id"]: hook for hook in local["hooks"]}

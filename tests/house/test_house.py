@@ -49,9 +49,10 @@ def test_each_reason_for_a_closed_list_is_about_one_that_exists(files: list[Sour
 
 
 def test_every_thread_is_watched() -> None:
-    """A thread that a fault ends is restarted or reported: `lumen.upkeep.threads`; that of the records serves one desk,
-    whoever waits for a picture of a film gets the fault that drawing it had, and the thread that reads the orders for
-    a skill ends its process.
+    """A thread that a fault ends is restarted or reported (`lumen.upkeep.threads`), except three.
+
+    The thread of the records serves one desk. A fault in drawing a picture of a film is raised by the wait for that
+    picture. The thread that reads the orders for a skill ends its process.
     """
     made = {
         str(file.relative_to(ROOT / PACKAGE))

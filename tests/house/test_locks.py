@@ -23,7 +23,7 @@ def package(name: str, marker: str, *digits: str) -> dict[str, Any]:
 
 
 def export(lock: dict[str, Any], group: str) -> list[str]:
-    """The lines for pip of a group, without the comment on top."""
+    """Return the lines for pip of a group, without the comment on top."""
     return locks.exports(lock)[ROOT / f"locks/{group}.txt"].splitlines()[1:]
 
 
@@ -47,7 +47,7 @@ def test_a_file_for_pip_has_what_its_group_adds_to_those_before_it() -> None:
 
 
 def tags(minor: int) -> Iterator[Tag]:
-    """The tags of wheels that CPython 3.MINOR installs on Linux."""
+    """Yield the tags of wheels that CPython 3.MINOR installs on Linux."""
     yield from cpython_tags((3, minor), platforms=PLATFORMS)
     yield from compatible_tags((3, minor), interpreter=f"cp3{minor}", platforms=PLATFORMS)
 

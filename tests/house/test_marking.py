@@ -72,11 +72,11 @@ def test_marks_come_from_what_is_named(name: str, expected: str) -> None:
 
 @pytest.mark.parametrize("name", ["starts"])
 def test_and_not_from_strings(name: str, request: pytest.FixtureRequest) -> None:
-    """Or this one would need a broker."""
+    """A name in a string marks no test, or this one would need a broker."""
     assert {mark.name for mark in request.node.iter_markers()} <= {"parametrize", "xdist_group"}
 
 
 @pytest.mark.xdist_group("one")
 def test_workers_are_told_of_groups(request: pytest.FixtureRequest) -> None:
-    """Or brokers of their own run at the same time: a pytest whose ids plugins can't change does so in silence."""
+    """If ids of tests could not be changed, groups would be ignored silently, and several brokers would run at once."""
     assert request.node.nodeid.endswith("@one") == request.config.getoption("loadgroup", False)

@@ -1,4 +1,4 @@
-"""The tool that moves the files of the engine, in a small house of its own; and its plan for this one."""
+"""The tool that moves the files of the engine, in a small package of its own, and its plan for this engine."""
 
 import tomllib
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""The figure of names that mean two things, of a small house of which everything can be counted by hand."""
+"""The figure of names that mean two things, for a small package of which everything can be counted by hand."""
 
 import ast
 

@@ -31,17 +31,17 @@ ELSEWHERE = {"ALTextToSpeech", "angleInterpolationBezier", "YAML", "NaN", "asser
 
 
 def prose(page: str) -> str:
-    """A page without its blocks of code and the figures that a script writes."""
+    """Return a page without its blocks of code and the figures that a script writes."""
     return BLOCK.sub("", (ROOT / page).read_text(encoding="utf-8"))
 
 
 def items(page: str) -> list[str]:
-    """The numbered items of a page."""
+    """Return the numbered items of a page."""
     return re.findall(r"(?m)^\d\. (?:.*\n)(?: {3}.*\n)*", prose(page))
 
 
 def found(path: str) -> list[Path]:
-    """The files of the repository, or of the package, that a page names by a path; CODE and NAME match any name."""
+    """Return the files of the repository or the package that match a page's path; CODE and NAME match any name."""
     pattern = PLACEHOLDER.sub("*", path).rstrip("/")
     return [file for folder in (ROOT, ENGINE) for file in folder.glob(pattern)]
 
@@ -51,7 +51,7 @@ def paths(text: str) -> list[str]:
 
 
 def names(text: str) -> Iterator[str]:
-    """The words that can only be names of code: dotted, or with a capital or an underscore inside."""
+    """Yield the words that can only be names of code: dotted, or with a capital or an underscore inside."""
     for code in CODE.findall(text):
         name = code.removesuffix("()").partition("(")[0]
         inner = re.search(r"[a-z]_[a-z]|[a-z][A-Z]|^[A-Z]\w+$|^_", name) or "." in name

@@ -43,7 +43,7 @@ def test_well(number):
 
 
 def run(folder: Path, text: str, *more: str) -> list[str]:
-    """The lines of a run of such a file."""
+    """Return the lines of a run of such a file."""
     (folder / "test_it.py").write_text(text)
     (folder / "pytest.ini").write_text("[pytest]\n")
     words = [sys.executable, "-m", "pytest", "-q", "-p", "tests.progress", *more, "test_it.py"]

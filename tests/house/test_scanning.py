@@ -1,4 +1,4 @@
-"""A search that finds nothing fails, and so does a test whose parameters are none."""
+"""A search that finds nothing fails, and so does a test without parameters to try."""
 
 from pathlib import Path
 

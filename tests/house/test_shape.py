@@ -1,4 +1,4 @@
-"""The figures of a small house of which everything can be counted by hand."""
+"""The figures of a small package of which everything can be counted by hand."""
 
 import json
 from pathlib import Path

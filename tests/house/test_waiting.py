@@ -8,7 +8,7 @@ from lumen.bus import connect
 from tests.waiting import Collector, finished, source_of, until
 
 SHORT = 0.01
-"""For waits that are to fail [s]."""
+"""The time limit of waits that are to fail [s]."""
 
 
 def test_a_condition_that_holds_is_enough() -> None:

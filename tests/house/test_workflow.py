@@ -20,21 +20,21 @@ MARKS = {line.partition(":")[0] for line in PROJECT["tool"]["pytest"]["ini_optio
 
 
 def commands(job: str) -> Iterator[list[str]]:
-    """The words of each command of a job."""
+    """Yield the words of each command of a job."""
     for step in JOBS[job]["steps"]:
         for line in step.get("run", "").splitlines():
             yield shlex.split(line)
 
 
 def of_make(job: str) -> Iterator[str]:
-    """The words that a job passes to make."""
+    """Yield the words that a job passes to make."""
     for words in commands(job):
         if "make" in words:
             yield from words[words.index("make") + 1 :]
 
 
 def marks(expression: str) -> set[str]:
-    """The marks that an expression of pytest's `-m` names."""
+    """Return the marks that an expression of pytest's `-m` names."""
     return {node.id for node in ast.walk(ast.parse(expression, mode="eval")) if isinstance(node, ast.Name)}
 
 

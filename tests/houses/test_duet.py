@@ -81,7 +81,7 @@ def test_an_event_is_for_one_robot_and_only_what_it_waits_for(heard: Bus) -> Non
 @pytest.mark.physics
 @pytest.mark.slow
 def test_they_dance_in_step_in_one_world(heard: Bus) -> None:
-    """Measured from what both say on the bus of their right shoulders, every 20 ms: how much later Ben moves."""
+    """The delay of Ben is measured by the right shoulders of both, which the bus has every 20 ms."""
     house, shows = duet("simulation")
     robots: list[Any] = [show.services.setup.robot for show in shows.values()]
     assert robots[0].world.physics is robots[1].world.physics
@@ -108,7 +108,7 @@ def test_they_dance_in_step_in_one_world(heard: Bus) -> None:
 
 
 def _curve(messages: list[Message], robot: str) -> tuple[np.ndarray, np.ndarray]:
-    """When [s], and where its right shoulder was [rad]."""
+    """Return the times [s], and the angles of its right shoulder then [rad]."""
     bodies: list[Any] = [message.body for message in messages if message.key == f"avatar.{robot}.data.joint"]
     return np.array([body["time"] for body in bodies]), np.array([_angle(body) for body in bodies])
 

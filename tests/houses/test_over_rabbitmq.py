@@ -50,7 +50,7 @@ class Hall:
         process.wait(HANG)
 
     def call(self, verb: str, *flags: str) -> tuple[int, str]:
-        """Return the exit code and all output."""
+        """Call `lumen` for the house; return the exit code and all output."""
         self._capsys.readouterr()
         code = main([verb, *flags, str(self.root), "--bus", self.url])
         said = self._capsys.readouterr()
@@ -81,7 +81,7 @@ def hall(two: Path, broker: RabbitMQ, capsys: pytest.CaptureFixture[str]) -> Ite
 
 
 def test_two_robots_of_one_process(hall: Hall, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The second of a name is refused, the stop of one is its own, and outlives its process; who ended it is told."""
+    """A second process for a name is refused; a stop concerns one robot, outlives its process, and names its end."""
     monkeypatch.setattr(sys, "stdin", None)
     process, _ = hall.begin()
     until(hall.both)
@@ -130,7 +130,7 @@ def test_a_robot_whose_process_is_killed_is_told_and_the_other_goes_on(hall: Hal
 def test_what_they_have_in_common_outlives_the_loss_of_the_broker(
     stage: Path, broker: RabbitMQ, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Ben hears what Ana assigned while he was cut off; and a replay takes each of his steps again."""
+    """Ben gets the value that Ana assigned while he was cut off, and a replay repeats each of his steps."""
     hall, wire = Hall(stage, broker.url, capsys), Relay(broker.port)
     try:
         hall.begin("--robot-name", "ana")

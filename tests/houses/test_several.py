@@ -1,4 +1,4 @@
-"""Several robots in one process: each with its visitors, its files and its stop; one is not the others."""
+"""Several robots in one process, each with its own visitors, files and stop."""
 
 import json
 from collections.abc import Iterator, Mapping
@@ -28,7 +28,7 @@ NAMES = ("ana", "ben")
 def opened(
     root: Path, names: tuple[str, ...] = NAMES, story: str | None = "visitor"
 ) -> Iterator[dict[str, Exhibition]]:
-    """The robots of that project on one bus of this process, as fast as time goes; the first has the story."""
+    """Open the robots of that project on one bus of this process, as fast as possible; the first plays the story."""
     projects = {name: lumen.load(root, robot=name) for name in names}
     told = {name: projects[name].stories[story] if story and name == names[0] else None for name in names}
     setups = set_up_house("recording", projects, "max", told)

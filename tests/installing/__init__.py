@@ -1,1 +1,1 @@
-"""Lumen installed from its wheel into an environment that has nothing else: its size, what works, what is said."""
+"""Lumen installed from its wheel into an environment that has nothing else: its size, its functions, its messages."""

@@ -21,7 +21,7 @@ def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="session")
 def core(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The Python of that environment."""
+    """The Python of an environment with Lumen's core and nothing more."""
     python = installing.environment(tmp_path_factory.mktemp("environment") / "core")
     installing.install(python, "--no-compile", str(wheel))
     return python
@@ -29,7 +29,7 @@ def core(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="session")
 def lumen(core: Path) -> Lumen:
-    """`lumen` of that environment, called in a folder: `lumen(folder, "lint", "--strict")`."""
+    """A function that calls `lumen` of that environment in a folder: `lumen(folder, "lint", "--strict")`."""
     clean = {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}
 
     def call(folder: Path, *words: str) -> "CompletedProcess[str]":

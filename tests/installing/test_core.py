@@ -16,7 +16,7 @@ from tests.waiting import HANG
 
 pytestmark = [pytest.mark.xdist_group("installing"), pytest.mark.slow]
 MAX_SIZE = 100.0
-"""Of the core's files, without bytecode [MB]."""
+"""The greatest size of the core's files, without bytecode [MB]."""
 SIMULATION = ("run --story visitor --speed max", "lint --physics", "play dance", "run --video film.mp4")
 
 

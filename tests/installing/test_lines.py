@@ -79,7 +79,7 @@ def test_all_that_they_ask_for_can_be_had_together_by_who_has_the_core(
 
 
 def asked_on(version: str) -> list[str]:
-    """The packages that core, simulation and plots require there; pip evaluates markers for its own Python."""
+    """Return the packages that core, simulation and plots require there; pip evaluates markers for its own Python."""
     project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
     extras = project["optional-dependencies"]
     lines = [*project["dependencies"], *extras["simulation"], *extras["plot"]]

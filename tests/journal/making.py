@@ -35,7 +35,7 @@ def minimal() -> Project:
 
 
 def bundle(machine: MachineDefinition) -> Project:
-    """A project in which this is the behaviour that runs."""
+    """Return a project in which this is the behaviour that runs."""
     return replace(minimal(), behaviors={machine.id: machine}, behavior=machine.id, hash=machine.hash)
 
 

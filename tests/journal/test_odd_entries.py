@@ -23,7 +23,7 @@ ODD: tuple[Any, ...] = (
 
 @pytest.fixture(scope="module")
 def played(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The journal of a small exhibition in which a visitor was."""
+    """The journal of a small exhibition after a visit."""
     folder = copied_project(ROOT / "examples/minimal", tmp_path_factory.mktemp("odd") / "minimal")
     (story,) = lumen.load(folder).stories
     with lumen.open(folder, story=story) as exhibition:
@@ -41,7 +41,7 @@ def places(data: Any, path: tuple[Any, ...] = ()) -> Iterator[tuple[Any, ...]]:
 
 
 def with_odd(entry: Any, chance: random.Random) -> Any:
-    """The entry with something odd in a place of it, or without that."""
+    """Return the entry with an odd value at one of its places, or without that place."""
     place = chance.choice(list(places(entry)))
     inside = entry
     for key in place[:-1]:

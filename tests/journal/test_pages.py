@@ -47,7 +47,7 @@ def named(*names: str) -> list[Step]:
 
 
 def whole(writer: JournalWriter, position: int = 0, most: int = 7) -> list[dict[str, Any]]:
-    """All pages from there on."""
+    """Return the entries of all pages from `position` on."""
     found = list[dict[str, Any]]()
     while (page := journal_page(writer, position, most))["entries"]:
         assert page["run"] == writer.run

@@ -45,7 +45,7 @@ def quiet(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
 
 
 def what(step: Step) -> tuple[object, ...]:
-    """The event and effect of a step, without the causes."""
+    """Return the event and effect of a step, without the causes."""
     return step.event and step.event[:4], step.entered, step.exited, step.snapshot.at
 
 

@@ -39,7 +39,7 @@ def reach(style: LifeStyle) -> np.ndarray:
 def followed(face: Vector3, style: str, seed: int, *, told: bool) -> tuple[np.ndarray, np.ndarray]:
     """Return the pose of a weightless living head under the follower, and its gaze [rad]: a row each 20 ms of 20 s.
 
-    `told` is whether the poses include their part of life.
+    If `told`, the poses include their part of life.
     """
     layer, tracker = LifeLayer(BODY, seed), Tracker(CONTROLLER, BODY)
     layer.style = PROJECT.life[style]

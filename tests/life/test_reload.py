@@ -19,7 +19,7 @@ from tests.nodes import whole
 
 
 class Told(RecordingRobot):
-    """Remembers its styles of life."""
+    """A recording robot that keeps its styles of life."""
 
     lives: list[Live]
 

@@ -1,4 +1,4 @@
-"""A simulated robot that lives: it stands as firmly as before, and commands do not notice."""
+"""A simulated robot that lives stands as firmly as without life, and performs commands as before."""
 
 import numpy as np
 import pytest

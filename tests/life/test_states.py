@@ -64,7 +64,7 @@ def test_a_behaviour_that_says_nothing_is_still() -> None:
 
 
 class Listening(RecordingRobot):
-    """Remembers the styles of life that it received."""
+    """A recording robot that keeps the styles of life that it received."""
 
     def start(self, id: str, command: RobotCommand) -> None:
         if isinstance(command, Live):

@@ -15,7 +15,7 @@ ELSEWHERE = {
 
 
 def marked(diagnostic: Diagnostic, files: dict[str, bytes]) -> str:
-    """The text from the beginning of the place to its end."""
+    """Return the text from the beginning of the place to its end."""
     place = diagnostic.place
     lines = files.get(place.file, b"").decode("utf-8-sig", "replace").split("\n")[place.line - 1 : place.end_line]
     if not lines:
@@ -33,7 +33,7 @@ def spoken_of(diagnostic: Diagnostic, text: str, files: dict[str, bytes]) -> boo
 
 
 def keys(diagnostic: Diagnostic, files: dict[str, bytes]) -> set[str]:
-    """The keys in which the marked node stands, and its own; a state is called by the last two of its path."""
+    """Return the keys in which the marked node stands, and its own; a state is called by the last two of its path."""
     document, _ = parse(diagnostic.place.file, files[diagnostic.place.file])
     paths = [path for path, span in document.spans.items() if diagnostic.place in span] if document else []
     names = {step for path in paths for step in path if isinstance(step, str)}

@@ -61,7 +61,7 @@ def test_a_line_gone_doubled_or_indented(file: str, data: st.DataObject) -> None
 @settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(st.sampled_from([file for file in FILES if file.endswith(".yaml")]), st.data())
 def test_any_value_in_place_of_any_other(file: str, data: st.DataObject) -> None:
-    """Something else stands somewhere: the file is written anew as JSON, which is YAML too."""
+    """A random value replaces another one; the file is then written as JSON, which is YAML too."""
     document, _ = parse(file, BASE[file])
     assert document
     path = data.draw(st.sampled_from(sorted(filter(None, document.spans), key=str)))

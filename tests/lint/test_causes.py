@@ -4,7 +4,7 @@ from lumen.language.diagnostics import Diagnostic, Place, gathered
 
 
 def test_a_finding_that_two_readings_of_the_files_make_is_one_whatever_each_holds_for_its_cause() -> None:
-    """With several robots each reads the files: another body may be to blame for one of them."""
+    """Each of several robots reads the files, and another body may be the cause for one of them."""
     twice = [
         Diagnostic("too-fast", "too fast", Place("motions/wave.yaml", 3, 1), cause=f"c{robot}", root=f"r{robot}")
         for robot in ("Ana", "Ben")

@@ -42,7 +42,7 @@ def trees() -> dict[str, ast.Module]:
 
 
 def declarations() -> Iterator[tuple[str, str, str]]:
-    """File, constant and code of each declaration."""
+    """Yield the file, constant and code of each declaration."""
     for file, tree in trees().items():
         for node in tree.body:
             match node:

@@ -1,4 +1,4 @@
-"""docs/lint-compared.md shows what lint says today; what its peers say is printed by the benchmark."""
+"""docs/lint-compared.md shows what lint reports today; the benchmark prints the reports of other tools."""
 
 import re
 

@@ -27,7 +27,7 @@ Run = Callable[..., str]
 
 @pytest.fixture
 def project(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """One that names a sound, a mesh and a fact with a last day; each of its files has been left alone for long."""
+    """A project that names a sound, a mesh and a fact with a last day, and whose files count as settled."""
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     monkeypatch.setattr(looks, "SETTLED_NS", -(10**18))
     root = copied_project(BASE, tmp_path / "project")
@@ -44,7 +44,7 @@ def project(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 @pytest.fixture
 def judged(monkeypatch: pytest.MonkeyPatch) -> list[int]:
-    """Has an entry for each time that the rules looked."""
+    """A list with an entry for each time that the rules ran."""
     times: list[int] = []
     first = traps.check
 

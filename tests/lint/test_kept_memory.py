@@ -16,7 +16,7 @@ TOUR = "behaviors/tour.yaml"
 
 @pytest.fixture
 def project(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """One that nothing is remembered of, which has been left alone for long."""
+    """A project without stored results, whose files count as settled."""
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     monkeypatch.setattr(looks, "SETTLED_NS", -(10**18))
     forget(monkeypatch)

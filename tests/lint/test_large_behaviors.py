@@ -1,4 +1,4 @@
-"""Behaviours of many states are checked with work that grows as they do."""
+"""Behaviours of many states are checked with work that grows in proportion to their size."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -22,7 +22,7 @@ def flat(count: int) -> str:
 
 
 def one_way_out(count: int) -> str:
-    """A parallel state that each state in it leaves."""
+    """Return a parallel state that each state in it leaves."""
     text = "states:\n  out: {on: {e: p}}\n  p:\n    type: parallel\n    states:\n"
     for i in range(count):
         text += f"      r{i}: {{initial: a{i}, states: {{a{i}: {{on: {{e: b{i}, x: '#out'}}}}, b{i}: {{}}}}}}\n"
@@ -37,7 +37,7 @@ def into_other_regions(count: int) -> str:
 
 
 def back_and_forth(count: int) -> str:
-    """Two states with many events."""
+    """Return two states with many events."""
     states = ((here, ", ".join(f"e{i}: {there}" for i in range(count))) for here, there in ("ab", "ba"))
     return "states:\n" + "".join(f"  {here}: {{on: {{{rows}}}}}\n" for here, rows in states)
 
@@ -54,7 +54,7 @@ def test_five_times_as_large_takes_five_times_the_calls(rule: ModuleType, shape:
 
 
 def work(rule: ModuleType, shape: Callable[[int], str], count: int) -> int:
-    """The number of calls in which a rule checks a behaviour."""
+    """Return the number of calls in which a rule checks a behaviour."""
     project = draft({"lumen.yaml": PROJECT, "behaviors/hello.yaml": shape(count).encode()})
     project.root = Path("/nowhere")
     assert "hello" in project.behaviors
@@ -64,7 +64,7 @@ def work(rule: ModuleType, shape: Callable[[int], str], count: int) -> int:
 
 @pytest.mark.slow
 def test_events_that_nothing_raises_are_found_in_few_calls() -> None:
-    """The events of `raise` were compared with those of `on` once for each event: cubic."""
+    """To compare the events of `raise` with those of `on` once for each event would be cubic."""
 
     def raising(count: int) -> str:
         raised = "".join(f"      - {{raise: x{i}}}\n" for i in range(count))

@@ -31,7 +31,7 @@ def repository(tmp_path: Path) -> Path:
 
 
 def made(home: Path, *projects: str) -> Path:
-    """A git repository with projects in these folders of it, all staged; `lumen` and `pre-commit` on its PATH."""
+    """Return a git repository with staged projects in these folders; `lumen` and `pre-commit` are on its PATH."""
     repository = home / "repository"
     for folder in projects:
         copied_project(BASE, repository / folder)
@@ -91,7 +91,7 @@ def hooks(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
 
 @pytest.fixture
 def commit(hooks: tuple[Path, str], tmp_path: Path) -> Callable[[Path], CompletedProcess[str]]:
-    """Return pre-commit's result for all staged files. `language: system` keeps it from installing anything."""
+    """A function that runs pre-commit on all staged files. `language: system` keeps it from installing anything."""
     source, revision = hooks
 
     def commit(repository: Path) -> CompletedProcess[str]:

@@ -1,4 +1,4 @@
-"""Lint of files of sayings: names that are not there, at their places."""
+"""Lint of files of sayings: unknown names are found at their places."""
 
 from lumen.lint import check_files
 from lumen.project.files import read_files

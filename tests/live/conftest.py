@@ -21,7 +21,7 @@ def copy(whole: Path) -> Path:
 
 
 def trimmed(whole: Path) -> Path:
-    """The copy with few stories and a patient guide."""
+    """Leave few stories in the copy, and a patient guide; return the copy."""
     for story in (whole / "behaviors" / "stories").glob("*.yaml"):
         if story.stem not in ("refuses", "known_visitor"):
             story.unlink()

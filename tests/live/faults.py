@@ -1,4 +1,4 @@
-"""A fault at a step of our own code: the functions that are entered are counted, and any of them is made to fail."""
+"""Faults at steps of our own code: the functions that are entered are listed, and any of them can be made to fail."""
 
 import sys
 from collections.abc import Callable
@@ -17,7 +17,7 @@ class FaultError(Exception):
 
 
 def steps(work: Callable[[], object], above: Callable[..., object]) -> list[CodeType]:
-    """The functions of Lumen that `work` enters within a call of `above`, in that order."""
+    """Return the functions of Lumen that `work` enters within a call of `above`, in that order."""
     found: dict[CodeType, None] = {}
 
     def enter(frame: FrameType) -> None:
@@ -43,7 +43,7 @@ def failing(step: CodeType, work: Callable[[], T], above: Callable[..., object])
 
 
 def name(step: CodeType) -> str:
-    """`insight/migration/moving.py:exits`."""
+    """Return the name of a step, such as `insight/migration/moving.py:exits`."""
     return f"{step.co_filename.removeprefix(ROOT)[1:]}:{step.co_qualname}"
 
 

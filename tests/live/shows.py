@@ -29,7 +29,7 @@ QUIET = 0.06
 
 
 class Here:
-    """A `FileJudge` on the thread that asks: what tests are about is seldom where files are judged."""
+    """A `FileJudge` on the calling thread, since few tests are about the process that judges files."""
 
     def __init__(self, root: Path) -> None:
         self._root = root
@@ -54,7 +54,7 @@ class Here:
 
 
 class Live:
-    """Ticks as fast as it can while it waits for something."""
+    """A show that ticks as fast as possible while a test waits for a condition."""
 
     def __init__(
         self,
@@ -106,7 +106,7 @@ class Live:
         self.until(lambda: text in self.transcript)
 
     def live(self, seconds: float) -> None:
-        """So much of its own time."""
+        """Let so much of the show's time pass [s]."""
         end = self.show.loop.clock.now() + seconds
         self.until(lambda: self.show.loop.clock.now() >= end)
 
@@ -131,7 +131,7 @@ class Live:
         draft.replace(path)
 
     def ask(self, command: object, **more: object) -> dict[str, Any]:
-        """The first answer to a command."""
+        """Send a command, and return the first answer to it."""
         before = len(self.answers.messages)
         body = {"command": command, **more}
         self.show.loop.bus.publish(COMMAND, body, reply_to="lumen.test.answer", correlation_id=str(before))

@@ -18,7 +18,7 @@ from lumen.run.recovery.startup import startup_project
 from lumen.run.reload_journal import Journal
 from tests.live.shows import Live
 
-pytestmark = pytest.mark.rest  # dear
+pytestmark = pytest.mark.rest  # expensive
 
 TOUR = "behaviors/tour.yaml"
 SORRY, PARDON = 'en: "I am sorry, I did not understand that."', 'en: "Come again, please?"'
@@ -42,7 +42,7 @@ def run(copy: Path, monkeypatch: pytest.MonkeyPatch) -> list[str]:
 
 
 def fail_with(monkeypatch: pytest.MonkeyPatch, hash: str, error: Exception) -> None:
-    """From now on these files end whatever runs on them."""
+    """From now on, let each tick on the files with this hash raise `error`."""
     usual = Node.tick
 
     def tick(node: Node) -> float:

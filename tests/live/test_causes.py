@@ -17,7 +17,7 @@ from lumen.statechart import Step
 from tests.tables import for_each
 from tests.waiting import Collector
 
-pytestmark = pytest.mark.rest  # dear
+pytestmark = pytest.mark.rest  # expensive
 
 
 @pytest.fixture

@@ -33,7 +33,7 @@ class Ears(Observer):
 
 
 def leave(live: Live) -> None:
-    """The visit is over."""
+    """Let the visitor leave, and the visit end."""
     loop = live.show.loop
     assert live.show.visitor
     live.show.visitor.leave()
@@ -193,7 +193,7 @@ def test_off_means_off(copy: Path) -> None:
 
 @pytest.fixture
 def waving(copy: Path) -> Iterator[Live]:
-    """Where whatever is played never ends by itself, nor the farewell."""
+    """A show in which neither a motion nor the farewell ends by itself."""
     wait_for_visitors(copy, PATIENT, "30s")
     tour = copy / "behaviors" / "tour.yaml"
     tour.write_text(tour.read_text("utf-8").replace('12s: "#idle"', '2h: "#idle"'), "utf-8")

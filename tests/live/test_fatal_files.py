@@ -18,7 +18,7 @@ from lumen.run.reload import validation_worker
 from lumen.run.reload.validation_worker import ValidationWorker, load_apart
 from tests.live.shows import Live
 
-pytestmark = pytest.mark.rest  # dear
+pytestmark = pytest.mark.rest  # expensive
 
 SORRY = 'en: "I am sorry, I did not understand that."'
 FATAL, PARDON = 'en: "FATAL"', 'en: "Come again, please?"'
@@ -45,7 +45,7 @@ ENDS = {
 
 @pytest.fixture
 def reader(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The judging process ends at the word FATAL."""
+    """Let the judging process end at the word FATAL."""
     ends = getattr(request, "param", "os.kill(os.getpid(), signal.SIGSEGV)")
     monkeypatch.setattr(validation_worker, "COMMAND", [sys.executable, "-c", READER.format(ends=ends)])
 

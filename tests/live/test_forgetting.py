@@ -1,4 +1,4 @@
-"""A name that was forgotten is not found again: not in any byte that the exhibition keeps, whatever ended it."""
+"""A forgotten name is in no byte of the files that the exhibition keeps, however the exhibition ended."""
 
 import io
 import json
@@ -65,7 +65,7 @@ def copy(whole: Path) -> Path:
 
 @contextmanager
 def running(copy: Path) -> Iterator[tuple[Guarded[str], Bus]]:
-    """An exhibition in a process of its own, which hears by now, and its bus."""
+    """An exhibition in a process of its own, which already receives messages, and its bus."""
     begun = time.time()
     command = [sys.executable, "-m", "lumen", "run", copy, "--robot", "recording"]
     with Guarded(command, stdin=PIPE, stdout=PIPE, stderr=STDOUT, text=True) as process:
@@ -90,7 +90,7 @@ def running(copy: Path) -> Iterator[tuple[Guarded[str], Bus]]:
 
 
 def found(copy: Path, name: str) -> list[str]:
-    """The files under `.lumen` in which the name is, in whatever form: also packed, and as JSON escapes it."""
+    """Return the files under `.lumen` that have the name in any form: also packed, and as JSON escapes it."""
     forms = {form(kind) for kind in (name, name.upper(), name.lower(), name.casefold()) for form in (_nfc, _nfd)}
     sought = {form.encode(code) for form in forms for code in ("utf-8", "utf-16-le", "utf-32-le")}
     sought |= {json.dumps(form)[1:-1].encode() for form in forms}
@@ -126,7 +126,7 @@ def _contents(path: Path) -> Iterator[tuple[str, bytes]]:
 
 
 def stands(copy: Path) -> dict[str, Any]:
-    """The snapshot, as it was written."""
+    """Return the snapshot as it was written."""
     found: dict[str, Any] = json.loads((copy / ".lumen/snapshot.json").read_text("utf-8"))["snapshot"]
     return found
 
@@ -136,7 +136,7 @@ def hear(bus: Bus, text: str) -> None:
 
 
 def faces(copy: Path, name: str) -> None:
-    """The eyes know a face by that name."""
+    """Let the eyes know a face by that name."""
     names, times = np.array([name], dtype=np.str_), np.array([1e12])
     np.savez_compressed(copy / ".lumen/faces.npz", names=names, times=times, faces=np.zeros((1, 96, 96), np.uint8))
 

@@ -14,7 +14,7 @@ from lumen.run.reload.validation_worker import COMMAND, ValidationWorker, load_a
 from lumen.upkeep import judge_process
 from tests.waiting import until
 
-pytestmark = pytest.mark.rest  # dear
+pytestmark = pytest.mark.rest  # expensive
 
 TOUR = "behaviors/tour.yaml"
 SORRY = b'en: "I am sorry, I did not understand that."'

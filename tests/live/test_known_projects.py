@@ -32,7 +32,7 @@ class Known(NamedTuple):
 
 @pytest.fixture(scope="module")
 def known(tmp_path_factory: pytest.TempPathFactory) -> Known:
-    """Judged once for all tests; do not change its files or its cache."""
+    """A project that was judged once for all tests; do not change its files or its cache."""
     folder, home = trimmed(copied(tmp_path_factory.mktemp("project"))), tmp_path_factory.mktemp("home")
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("XDG_CACHE_HOME", str(home))
@@ -56,7 +56,7 @@ def kept(known: Known, cache: Path) -> Path:
 
 
 def alone(monkeypatch: pytest.MonkeyPatch) -> None:
-    """From now on no process is begun or taken over."""
+    """From now on, let the start of a process fail, and also the use of one that runs."""
 
     def refused(*_: object, **__: object) -> object:
         raise AssertionError("a process is begun")

@@ -19,7 +19,7 @@ FINE = "en: [I am glad to hear that.,"
 
 
 def journaled(live: Live) -> SnapshotStore:
-    """Have it kept what happens from now on, by the store that keeps the files."""
+    """Record the inputs from now on, in the store that keeps the files; return the store."""
     loop, keeper = live.show.loop, live.records.keeper
     assert keeper
     keeper.store(read_files(live.folder))
@@ -35,7 +35,7 @@ def entries_of(live: Live) -> list[RecordedEntry]:
 
 
 def again(live: Live, keeper: SnapshotStore) -> list[ReplayedStep]:
-    """The journal of a show that is over, replayed with the files that were kept."""
+    """Return the replay of the journal of a show that is over, with the files that were kept."""
     machines = dict[str, MachineDefinition]()
 
     def machine(hash: str, behavior: str) -> MachineDefinition:

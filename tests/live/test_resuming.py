@@ -26,13 +26,13 @@ from tests.guarded import PIPE, Guarded
 from tests.live.shows import Live
 from tests.waiting import until
 
-pytestmark = pytest.mark.rest  # dear
+pytestmark = pytest.mark.rest  # expensive
 
 SORRY, PARDON = 'en: "I am sorry, I did not understand that."', 'en: "Come again, please?"'
 
 
 def crashed(live: Live) -> None:
-    """It greets Ada, is asked to dance, and is no more."""
+    """Let the show greet Ada and be asked to dance; then end it without notice."""
     assert live.records.keeper
     live.records.store(read_files(live.folder))
     live.greet()
@@ -212,7 +212,7 @@ def test_the_journal_is_bounded_and_whole(tmp_path: Path) -> None:
 
 @contextmanager
 def running(folder: Path, *words: str) -> Iterator[Guarded[str]]:
-    """`lumen run` with an open standard input, once it can be reached."""
+    """Run `lumen run` with an open standard input; yield it once it can be reached."""
     run = [sys.executable, "-m", "lumen", "run", str(folder), "--robot", "recording", "--speed", "4", *words]
     with Guarded(run, stdin=PIPE, stdout=PIPE, text=True) as process:
         try:

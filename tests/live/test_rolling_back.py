@@ -16,7 +16,7 @@ OTHER = 'en: "Hello, dear visitor!"'
 
 
 def active(live: Live) -> bool:
-    """Whether the files on the disk are those that run."""
+    """Return whether the files on the disk are those that run."""
     return live.show.loop.project.hash == fingerprint(read_files(live.folder))
 
 
@@ -27,7 +27,7 @@ def save(live: Live, name: str, text: str) -> None:
 
 
 def kept(live: Live, answer: dict[str, Any]) -> dict[str, str]:
-    """The newer versions that the answer names, by their file's name."""
+    """Return the newer versions that the answer names, by their file's name."""
     paths = [note.rpartition(" ")[2] for note in answer["notes"] if "the newer version is in" in note]
     return {Path(path).name: (live.folder / path).read_text("utf-8") for path in paths}
 

@@ -13,7 +13,7 @@ from tests.copying import copied_project
 from tests.live.shows import Live
 from tests.waiting import Collector
 
-pytestmark = pytest.mark.rest  # dear
+pytestmark = pytest.mark.rest  # expensive
 
 HELLO = "behaviors/hello.yaml"
 

@@ -65,7 +65,7 @@ def project(tmp_path: Path) -> Path:
 
 
 def loudness(samples: Any, rate: int = RATE, window: float = 0.02) -> Any:
-    """How loud the tone is in each window."""
+    """Return the loudness of the tone in each window."""
     size = round(rate * window)
     parts = samples[: len(samples) // size * size].reshape(-1, size) * np.hanning(size)
     turn = np.exp(-2j * np.pi * TONE * np.arange(size) / rate)

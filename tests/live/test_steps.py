@@ -20,7 +20,7 @@ from lumen.run.watcher import SavedFiles
 from tests.live.faults import failing, name, steps
 from tests.live.shows import Live
 
-pytestmark = pytest.mark.rest  # dear
+pytestmark = pytest.mark.rest  # expensive
 
 ROUTE = "routes:\n  load: {key: lumen.load, direction: in, event: load}\n"
 REGION = """
@@ -59,13 +59,13 @@ class Bench:
         return self.reloading._judge(saved)
 
     def take(self, validation: Validation) -> None:
-        """Live through what comes of it."""
+        """Hand the validation over, and tick: its files are applied or refused."""
         self.reloading._watcher.results.put(validation)
         self.live.show.tick()
 
     @property
     def hash(self) -> str:
-        """Of the bundle that runs."""
+        """The hash of the bundle that runs."""
         return self.live.show.loop.project.hash
 
     def is_whole(self) -> bool:
@@ -77,7 +77,7 @@ class Bench:
 
 
 def _ours(path: str) -> bool:
-    """Whether that file is marked: not stories, which would be played, nor the words that come with Lumen."""
+    """Return whether that file is marked: not stories, which would be played, nor the words that come with Lumen."""
     return path.endswith(".yaml") and path != COMMON_FILE and not path.startswith(("models/", "behaviors/stories/"))
 
 
@@ -119,7 +119,7 @@ def test_a_fault_in_loading_or_linting(bench: Bench, every: bool) -> None:
 
 
 def fresh(validation: Validation) -> Callable[[], Validation]:
-    """Makes it anew each time: nothing in it has ever been compiled or worked out."""
+    """Return a function that makes the validation anew, with nothing in it compiled or worked out."""
     packed = pickle.dumps(replace(validation.project, documents={}) if validation.project else None)
     return lambda: replace(validation, project=pickle.loads(packed), running=None)
 

@@ -15,7 +15,7 @@ from lumen.statechart import Step
 from tests.rabbitmq import RabbitMQ
 from tests.waiting import Collector
 
-pytestmark = pytest.mark.rest  # dear
+pytestmark = pytest.mark.rest  # expensive
 
 VISITORS = {"Ana": "visitor", "Ben": "indonesian"}
 
@@ -28,7 +28,7 @@ def exhibition(project: Project, story: str, bus: str, speed: str = "max") -> Ex
 def play(
     shows: Mapping[str, Exhibition], meanwhile: Callable[[int], None] = lambda tick: None
 ) -> dict[str, list[tuple[object, ...]]]:
-    """All of them, tick by tick, until their stories end; what each behaviour did."""
+    """Tick all robots until their stories end; return the steps of each behaviour."""
     seen: dict[str, list[tuple[object, ...]]] = {name: [] for name in shows}
     for name, show in shows.items():
         show.observe(lambda step, seen=seen[name]: seen.append(_seen(step)))

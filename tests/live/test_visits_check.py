@@ -1,4 +1,4 @@
-"""Saved files are tried on the visits that were recorded: said with `warn`, refused with `refuse`, taken by hand."""
+"""Saved files are tried on recorded visits: a difference is reported, or refuses the files unless taken by hand."""
 
 import sys
 from pathlib import Path
@@ -23,7 +23,7 @@ from tests import ROOT
 from tests.copying import copied_project
 from tests.live.shows import Live
 
-pytestmark = pytest.mark.rest  # dear
+pytestmark = pytest.mark.rest  # expensive
 
 HELLO = "behaviors/hello.yaml"
 VISITS = 3

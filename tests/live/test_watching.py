@@ -28,7 +28,7 @@ def fill(folder: Path, text: str = "first") -> Path:
 
 
 class Clock:
-    """The watcher's time, as of the module `time`."""
+    """A stand-in for the module `time`, with the watcher's time."""
 
     def __init__(self) -> None:
         self.now = 100.0
@@ -45,7 +45,7 @@ def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
 
 
 class Watched:
-    """A watched project, and what came of its files."""
+    """A watched project, and the verdicts on its files."""
 
     def __init__(self, root: Path, clock: Clock) -> None:
         self.root, self.clock, self.looks = root, clock, 0
@@ -64,7 +64,7 @@ class Watched:
         return FileWatcher(self.root, read_files(self.root), lambda saved: saved, quiet=QUIET)
 
     def next(self) -> SavedFiles:
-        """The next verdict, however long its quiet period is."""
+        """Wait for the next verdict, however long its quiet period is, and return it."""
         results = self.watcher.results
         until(lambda: not results.empty(), meanwhile=lambda: self.pause(QUIET / 3), what="a verdict")
         return results.get()
@@ -75,7 +75,7 @@ class Watched:
         until(lambda: self.watcher._hint.set() or self.looks >= before + 2, every=0.001, what="two looks at the files")
 
     def last(self, text: str = "the last word") -> list[SavedFiles]:
-        """All verdicts up to that of a file written now."""
+        """Return all verdicts up to that on a file written now."""
         (self.root / "lumen.yaml").write_text(text, "utf-8")
         found = [self.next()]
         while found[-1].files["lumen.yaml"] != text.encode():
@@ -263,7 +263,7 @@ def test_a_judge_that_fails_ends_nothing(tmp_path: Path, clock: Clock, caplog: p
 
 
 def passing(clock: Clock) -> None:
-    """Let time pass as it does, and faster."""
+    """Let real time pass, and the watcher's time faster."""
     threading.Event().wait(0.001)
     clock.now += QUIET / 10
 
@@ -288,7 +288,7 @@ END = "\nits last line\n"
 
 
 class Judged(Watched):
-    """A project whose quiet period is longer than any test, and which is judged before it is over."""
+    """A watched project with a quiet period longer than any test, which is judged before that is over."""
 
     def __init__(self, root: Path, clock: Clock) -> None:
         for path in (TOUR, DANCE):

@@ -1,4 +1,4 @@
-"""Which software this is: results that were kept must not outlive the code that made them."""
+"""The fingerprint of the engine: stored results must not outlive the code that made them."""
 
 from importlib import import_module
 from pathlib import Path

@@ -83,7 +83,7 @@ def test_what_the_definition_says(root: Path) -> None:
 
 
 def test_a_changed_function_is_a_changed_behavior(root: Path) -> None:
-    """The journal and the reload know a behaviour by its hash; one of other functions stays what it was."""
+    """The journal and the reload know a behaviour by its hash; one that calls other functions keeps its hash."""
     before = load(root)
     write(root, "part_of_day", "12", "11")
     after = load(root)

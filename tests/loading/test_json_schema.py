@@ -65,7 +65,7 @@ def test_every_shipped_file_gets_a_quick_yes(kind: str, document: Document) -> N
 @settings(max_examples=250)
 @given(st.sampled_from(SMALL), st.randoms(use_true_random=False))
 def test_a_quick_yes_is_never_wrong(chosen: tuple[str, Document], random: Random) -> None:
-    """A file of which something was taken away, added, or put in another's place."""
+    """One or two values of a shipped file are taken away, added, or put in another's place."""
     kind, document = chosen
     data = _copy(document.data)
     for _ in range(random.choice([1, 1, 2])):

@@ -1,4 +1,4 @@
-"""Passages: what is built of a YAML and of a Markdown file, what counts of them, and what a change is called."""
+"""Passages of YAML and Markdown files, the parts of them that count, and the names of their changes."""
 
 from datetime import date
 from pathlib import Path

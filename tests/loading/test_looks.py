@@ -1,4 +1,4 @@
-"""Where the paths lead that lint looks at: the same as Python's own answer, which asks about each folder anew."""
+"""Lint resolves paths to the same places as Python, which asks about each folder anew."""
 
 import os
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""After a key only a block of a file is read again, and what depends on it judged: as if it were the first time."""
+"""After a key, only a block of a file is read and judged again, with the result of a first reading."""
 
 from pathlib import Path
 from typing import Any

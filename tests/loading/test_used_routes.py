@@ -51,20 +51,20 @@ bind: {inputs: {Near: context.near}, outputs: {Mood: {event: face, above: 0.5}}}
 
 
 def files(behavior: str, rows: str = "", **more: str) -> dict[str, bytes]:
-    """The files of a project whose lumen.yaml has these rows; `more` are behaviours and controllers by their names."""
+    """Return the files of a project whose lumen.yaml has these rows; `more` are behaviours and controllers by name."""
     texts = {"lumen.yaml": MAIN + rows, "behaviors/host.yaml": dedent(behavior)}
     texts |= {f"{'fuzzy' if text is THRESHOLD else 'behaviors'}/{name}.yaml": text for name, text in more.items()}
     return {name: text.encode() for name, text in texts.items()}
 
 
 def built_in(found: ProjectDraft) -> set[str]:
-    """The names of the routes that hold without a row."""
+    """Return the names of the routes that hold without a row."""
     assert found.settings
     return {name for name, route in found.settings.routes.items() if route.built_in}
 
 
 def sound(given: dict[str, bytes]) -> Project:
-    """The project of files with which nothing is wrong."""
+    """Return the project of files with which nothing is wrong."""
     project, found = check_files(Path(), given)
     assert project, found
     assert not found

@@ -1,4 +1,4 @@
-"""Every code has a page; docs/rules/ is what the pages say.
+"""Every code has a page, and docs/rules/ has the content of the pages.
 
 Lint finds in a wrong example what its page is about, at the marked word and nothing else, and nothing in a right one.
 """
