@@ -1,4 +1,4 @@
-"""`python -m tests.mistakes`: how many of the mistakes that people make lint tells well, and which not."""
+"""`python -m tests.mistakes` prints how many of people's common mistakes lint reports well, and the others."""
 
 import argparse
 import sys

@@ -1,4 +1,4 @@
-"""Changes to projects that are sound: mistakes in table/, and in legal/ what looks odd and is right.
+"""Changes to sound projects: mistakes in table/, and changes in legal/ that look odd and are right.
 
 Each file groups rows by subject. A row changes one file of a project:
 
@@ -6,11 +6,11 @@ Each file groups rows by subject. A row changes one file of a project:
       in: tour                      # or museum or talk; the file is its behaviour, if no `file` is named
       file: behaviors/tour.yaml
       after: "  dance:"             # `change` begins to look behind this text
-      change: ["- {play: dance}", "- play dance"]     # what stands there once, and what the row puts in its place; or
+      change: ["- {play: dance}", "- play dance"]     # a text that occurs there once, and its replacement; or
       write: {motions/bow.yaml: "…"}                  # files as a whole
       found: lumen.yaml             # the file to report it in, if it is another one
       at: play dance                # the line to report: the nearest one with this text, else the first that differs
-      says: "`play: dance`"         # stands in the message or the hint; of a list, one does
+      says: "`play: dance`"         # is in the message or the hint; one text of a list is enough
 
 The place and the words are what a person would want to be told, whatever lint says today.
 """
@@ -36,7 +36,7 @@ PROJECTS = {
 """Copies that stay as they are, so that an edit of the shipped tour changes no row."""
 
 TORN = b"Was sagte dem Webstuhl, was er weben soll?"
-"""A text of the frozen museum that lacks its quotes, which lint reports since then."""
+"""A text of the frozen museum that lacks its quotes, which lint reports by now."""
 
 
 class Row(NamedTuple):
@@ -52,12 +52,12 @@ class Row(NamedTuple):
 
 @cache
 def shipped(project: str) -> Mapping[str, bytes]:
-    """The files of a project as it is."""
+    """Return the files of a project as it is."""
     return {file: content.replace(TORN, b'"' + TORN + b'"') for file, content in read_files(PROJECTS[project]).items()}
 
 
 def rows(folder: str) -> Iterator[Row]:
-    """The rows of each file in that folder."""
+    """Yield the rows of each file in that folder."""
     for path in matching(HERE / folder, "*.yaml"):
         document, diagnostics = parse(path.name, path.read_bytes())
         assert document, diagnostics
@@ -92,5 +92,5 @@ def _row(name: str, data: Mapping[str, Any]) -> Row:
 
 
 def _first(old: list[str], new: list[str]) -> int:
-    """The first line that differs, from 1."""
+    """Return the number of the first line that differs, from 1."""
     return next((i for i, (a, b) in enumerate(zip(old, new, strict=False), 1) if a != b), min(len(old), len(new)))

@@ -19,7 +19,9 @@ class Judged(NamedTuple):
 
 
 class Score(NamedTuple):
-    """Rows of which each holds, of so many."""
+    """The numbers of rows with a finding at its line, with the remedy, and with only one finding; `rows` are all of
+    them.
+    """
 
     placed: int
     named: int
@@ -31,7 +33,7 @@ class Score(NamedTuple):
 
 
 def judge(row: Row) -> Judged:
-    """Whether the finding is at the right line and names the remedy there, and whether there is no other."""
+    """Return the row with lint's findings, and whether one is at the line and names the remedy, and is the only one."""
     found = findings(row.root, row.files)
     here = [d for d in found if d.place.file == row.file and d.place.line == row.line]
     named = any(words.lower() in f"{d.message} {d.hint}".lower() for d in here for words in row.says)

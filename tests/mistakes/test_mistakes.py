@@ -11,7 +11,7 @@ from tests.mistakes.rows import PROJECTS, Row, rows, shipped
 from tests.mistakes.scores import Judged, judge, score
 from tests.tables import for_each
 
-pytestmark = [pytest.mark.rest, pytest.mark.xdist_group("mistakes")]  # dear, and one lint serves the golden as well
+pytestmark = [pytest.mark.rest, pytest.mark.xdist_group("mistakes")]  # expensive; one lint serves the golden as well
 
 
 @cache

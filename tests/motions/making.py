@@ -29,7 +29,7 @@ def nao() -> Body:
 def read(
     text: str, name: str = "test", motions: dict[str, MotionDefinition] | None = None
 ) -> tuple[MotionDefinition | None, list[Diagnostic]]:
-    """The motion in the text of a file, and everything that is wrong with it."""
+    """Return the motion in the text of a file, None if it has too many faults, and all findings."""
     document, diagnostics = parse(f"motions/{name}.yaml", text.encode())
     assert document is not None
     report = DocumentReport(document)
@@ -50,7 +50,7 @@ TURNING = [name for name in nao().joints if name not in nao().hands]
 
 @st.composite
 def motions(draw: st.DrawFn, how: tuple[Interpolation, ...] = tuple(Interpolation)) -> MotionDefinition:
-    """Any motion of a few joints inside their limits, without handles, starting in Stand."""
+    """Draw any motion of a few joints inside their limits, without handles, starting in Stand."""
     tracks, longest = {}, 0.0
     for joint in draw(st.lists(st.sampled_from(TURNING), min_size=1, max_size=4, unique=True)):
         limits = nao().joints[joint]

@@ -1,4 +1,4 @@
-"""Words and sounds of a motion: told by every robot as their times come, spoken by the exhibition."""
+"""Words and sounds of a motion: every robot reports them at their times, and the exhibition speaks them."""
 
 import logging
 import shutil
@@ -69,7 +69,7 @@ def test_a_robot_tells_of_each_cue_when_it_comes(make: Callable[[], SimulatedRob
 
 
 class Ear(Observer):
-    """Hears what is said, and what the robot tells."""
+    """Keeps the spoken texts, and what the robot reports."""
 
     def __init__(self) -> None:
         self.said: list[Say] = []

@@ -20,24 +20,30 @@ MOUTH, HEAD_TOP, HAND = (0.05, 0.0, 0.028), (0.0, 0.0, 0.108), (0.05775, 0.0, -0
 
 
 class Moment(NamedTuple):
-    """One look at the robot: where its parts are [m], how high its left and right sole, how far it leans [deg]."""
+    """One look at the robot: the places of its parts [m]."""
 
     time: float
+    """Since the beginning of the motion [s]."""
     right_hand: Point
     left_hand: Point
     right_shoulder: Point
     mouth: Point
     head_top: Point
     soles: tuple[float, ...]
+    """The heights of the left and the right sole [m]."""
     error: float
+    """The greatest distance of a joint from the angle that its motor should have [rad]; hands do not count."""
     collisions: frozenset[tuple[str, str]]
+    """The pairs of the robot's own geoms that overlap by more than 1 mm."""
 
 
 class Show(NamedTuple):
     moments: list[Moment]
     events: list[str]
     tilt: float
+    """The greatest tilt of the torso, as `SimulatedRobot.greatest_tilt` has it."""
     took: float
+    """The duration until the answer [s]."""
 
     def between(self, begin: float, end: float) -> list[Moment]:
         return [moment for moment in self.moments if begin <= moment.time <= end]
@@ -70,7 +76,7 @@ def look(robot: SimulatedRobot, time: float) -> Moment:
 
 @cache
 def show(name: str, mass: float = 1.0, friction: float = 1.0) -> Show:
-    """A motion played from Stand to its end."""
+    """Play a motion from Stand to its end, and return what was observed."""
     motion = Motion.load(ROOT / "motions" / f"{name}.yaml")
     robot = SimulatedRobot(nao(), ROOT / "models", seed=1, variation=Variation(mass, friction))
     robot.advance(0.5)

@@ -1,4 +1,4 @@
-"""`lumen lint --physics`: which ways lead to a motion, and what is kept. What it finds is tested with the pages."""
+"""`lumen lint --physics`: the ways that lead to a motion, and stored results. Tests of pages have its findings."""
 
 import shutil
 from pathlib import Path
@@ -29,7 +29,7 @@ def test_every_motion_and_every_passage_is_a_case() -> None:
 
 @pytest.mark.parametrize("model", ["nao", "sprout", "greeter"])
 def test_a_fall_is_found_where_this_robots_own_file_moves_its_legs(model: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """In the file that this robot plays, at the keyframe that moves a leg; without legs at the one that comes next."""
+    """It is in the file that this robot plays, at the keyframe that moves a leg; without legs, at the next one."""
     monkeypatch.setenv(MODEL_VARIABLE, model)
     project = lumen.load(ROOT)
     case = next(case for case in cases(project) if case.motion.name == "dance")

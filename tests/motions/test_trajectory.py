@@ -48,7 +48,7 @@ def test_stays_inside_the_limits_between_keys(motion: MotionDefinition) -> None:
 @pytest.mark.slow
 @given(motions())
 def test_never_leaves_the_range_of_neighbouring_keys(motion: MotionDefinition) -> None:
-    """True of every interpolation drawn: only Bezier handles can lead beyond."""
+    """This holds for each interpolation that is drawn: only Bezier handles can lead beyond."""
     trajectory = Trajectory(motion)
     for joint, keys in motion.tracks.items():
         angles = [motion.origin[joint], *(key.angle for key in keys)]
@@ -89,7 +89,7 @@ def test_speed_has_no_jump_where_the_kind_is_one_kind(motion: MotionDefinition) 
 @pytest.mark.slow
 @given(motions())
 def test_what_it_says_of_speeds_is_what_samples_show(motion: MotionDefinition) -> None:
-    """`overspeed` names a joint exactly where dense samples are too fast."""
+    """`overspeed` names a joint exactly if dense samples are too fast."""
     found = {e.joint for e in overspeed(motion, nao())}
     trajectory = Trajectory(motion)
     for track in trajectory.tracks:

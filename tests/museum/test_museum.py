@@ -1,4 +1,4 @@
-"""The guide of examples/museum: its stories, its page, and a visit at honest physics."""
+"""The guide of examples/museum: its stories, its page, and a visit with physics."""
 
 import re
 from dataclasses import replace
@@ -96,7 +96,7 @@ class Watch(Observer):
     ],
 )
 def test_a_visit_at_honest_physics(museum: Project, story: str, places: list[str], shown: list[str]) -> None:
-    """It walks to each exhibit, is there as exactly as it claims, never falls, and is at the door again."""
+    """It walks to each exhibit, is at most as far off as it reports, never falls, and returns to the door."""
     blind = replace(museum, routes={name: route for name, route in museum.routes.items() if name != "image"})
     models, hall = model_files(museum)
     robot = SimulatedRobot(museum.body, models, hall, stage=museum.stage)

@@ -1,4 +1,4 @@
-"""`python -m tests.mutation`: mutants of the shipped project, and what lint and the stories make of them."""
+"""`python -m tests.mutation`: mutants of the shipped project, and the verdicts of lint and the stories on them."""
 
 import argparse
 import sys
@@ -15,18 +15,17 @@ WELL = ("error found", "warned, and runs", "clean, and runs")
 
 
 class Survey(NamedTuple):
-    """How many mutants of each kind came out how, the misses, and how many findings those with one mistake got.
-
-    `said` has the number of findings of each mutant with one mistake of which lint said something.
-    """
+    """The outcomes of mutants."""
 
     counts: Counter[tuple[str, str]]
+    """The number of mutants by kind and outcome."""
     misses: list[tuple[Mutant, Outcome]]
     said: list[int]
+    """The number of findings of each mutant that has one mistake and was reported."""
 
     @property
     def findings(self) -> float:
-        """Of one mistake, on average."""
+        """The average number of findings of one mistake."""
         return fmean(self.said)
 
 
@@ -43,7 +42,7 @@ def survey(seed: int, count: int, stories: int) -> Survey:
 
 
 def table(counts: Counter[tuple[str, str]]) -> str:
-    """The counts, a row for each kind."""
+    """Return a table of the counts, with a row for each kind."""
     outcomes = [*WELL, *sorted({what for _, what in counts} - {*WELL})]
     kinds = sorted({kind for kind, _ in counts})
     rows = [("", *outcomes, "sum")]

@@ -98,7 +98,7 @@ class Judge:
             self._seen[story.name] = seen.names
 
     def judge(self, file: str, line: int, files: Mapping[str, bytes], random: Random) -> Outcome:
-        """The outcome of a mutant that differs first in that line of that file."""
+        """Return the outcome of a mutant that differs first in that line of that file."""
         try:
             with patience():
                 project, diagnostics = check_files(ROOT, files)
@@ -145,7 +145,7 @@ class Judge:
         return random.sample(chosen, min(self._most, len(chosen)))
 
     def _state(self, file: str, line: int) -> str:
-        """The innermost state that stands around a line of the project as it was."""
+        """Return the innermost state around a line of the unchanged project."""
         document = self._project.documents[file]
         assert isinstance(document, Document)
         around = [

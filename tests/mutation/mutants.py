@@ -57,7 +57,7 @@ class Nursery:
         self.weights = [WEIGHTS.get(f, 3 if f.startswith(("motions/", "behaviors/")) else 1) for f in self.names]
 
     def mutant(self, number: int) -> Mutant:
-        """The mutant of that number; one in ten has two mistakes in the same file."""
+        """Return the mutant of that number; one in ten has two mistakes in the same file."""
         random = Random(number)
         file = random.choices(self.names, self.weights)[0]
         if file.endswith(".xml") or random.random() < 0.02:
@@ -105,6 +105,6 @@ def _sheet(file: str, content: bytes) -> Sheet | None:
 
 
 def _first(old: bytes, new: bytes) -> int:
-    """The first line that differs, from 1."""
+    """Return the number of the first line that differs, from 1."""
     pairs = enumerate(zip(old.split(b"\n"), new.split(b"\n"), strict=False), 1)
     return next((i for i, (a, b) in pairs if a != b), 1)

@@ -73,7 +73,7 @@ def swap_lines(random: Random, sheet: Sheet, others: Mapping[str, Sheet]) -> str
 
 
 def swap_values(random: Random, sheet: Sheet, others: Mapping[str, Sheet]) -> str:
-    """Two leaves change places; the later one first, so that the places stay right."""
+    """Exchange two leaves; the later one is replaced first, so that the places stay right."""
     first, second = sorted(random.choices(sheet.leaves, k=2), key=lambda p: sheet.entry(p))
     one, two = sheet.source(first), sheet.source(second)
     (a, b), (c, d) = (sheet.offsets(sheet.document.place(p)) for p in (first, second))
@@ -85,14 +85,14 @@ def truncate(random: Random, sheet: Sheet, others: Mapping[str, Sheet]) -> str:
 
 
 def garble(random: Random, sheet: Sheet, others: Mapping[str, Sheet]) -> str:
-    """A few characters at random; the surrogates become bytes that are no UTF-8."""
+    """Replace a few characters by random ones; surrogates become bytes that are no UTF-8."""
     at, length = random.randrange(len(sheet.text)), random.choice([0, 1, 3])
     noise = "".join(random.choice([_ascii, _sign, _no_text])(random) for _ in range(random.choice([1, 1, 4])))
     return sheet.text[:at] + noise + sheet.text[at + length :]
 
 
 def move(random: Random, sheet: Sheet, others: Mapping[str, Sheet]) -> str:
-    """A key with its value at another level: before another key, in line with it."""
+    """Move a key with its value to another level: before another key, in line with it."""
     path, goal = random.choice(sheet.keys), random.choice(sheet.keys)
     start, end = sheet.entry(path)
     at = sheet.entry(goal)[0]
@@ -112,7 +112,7 @@ def move(random: Random, sheet: Sheet, others: Mapping[str, Sheet]) -> str:
 
 
 def exchange(random: Random, sheet: Sheet, others: Mapping[str, Sheet]) -> str:
-    """A value of another place or another file."""
+    """Replace a value by one of another place or another file."""
     other = random.choice([sheet, random.choice(list(others.values()))])
     nodes = random.choice([other.leaves, other.nodes])
     value = other.document.data
@@ -123,7 +123,7 @@ def exchange(random: Random, sheet: Sheet, others: Mapping[str, Sheet]) -> str:
 
 
 def same_kind(random: Random, sheet: Sheet, others: Mapping[str, Sheet]) -> str:
-    """A value of the same key elsewhere in the file: a target for a target, a joint's angle for another's."""
+    """Replace a value by one of the same key elsewhere in the file: a target by a target, an angle by an angle."""
     path = random.choice(sheet.leaves)
     alike = [
         p
@@ -153,7 +153,7 @@ def unit(random: Random, sheet: Sheet, others: Mapping[str, Sheet]) -> str:
 
 
 def confuse(random: Random, sheet: Sheet, others: Mapping[str, Sheet]) -> str:
-    """A list for a value, a map for a list, an item for a list."""
+    """Replace a value by a list or a map, or a list by one of its items."""
     path = random.choice(sheet.nodes)
     value = sheet.value(path)
     ways: list[object] = [[value], {"a": value}, [[value]]]
@@ -168,14 +168,14 @@ def confuse(random: Random, sheet: Sheet, others: Mapping[str, Sheet]) -> str:
 
 
 def express(random: Random, sheet: Sheet, others: Mapping[str, Sheet]) -> str:
-    """An expression for a text, a template for a text, a text for an expression."""
+    """Replace a text by an expression or a template, or an expression by a text."""
     path = random.choice(sheet.leaves)
     source = random.choice(EXPRESSIONS)
     return sheet.replaced(path, _flow(random.choice([source, f"Hello {{{{ {source} }}}}", "just words"])))
 
 
 def operate(random: Random, sheet: Sheet, others: Mapping[str, Sheet]) -> str:
-    """Another operator, name or literal in an expression."""
+    """Put another operator, name or literal into an expression."""
     spots = list(
         re.finditer(r"==|!=|&&|\|\||<|>|context\.\w+|event\.data\.\w+|\b(heard|size|trim|after|hour)\b", sheet.text)
     )
@@ -186,7 +186,7 @@ def operate(random: Random, sheet: Sheet, others: Mapping[str, Sheet]) -> str:
 
 
 def mark(random: Random, sheet: Sheet, others: Mapping[str, Sheet]) -> str:
-    """A merge's marks, Windows' line ends, a byte order mark, a second document, tabs."""
+    """Add the marks of a merge, Windows' line ends, a byte order mark, a second document, or tabs."""
     lines = sheet.text.splitlines(keepends=True)
     at = random.randrange(len(lines))
     merged = [*lines[:at], "<<<<<<< HEAD\n", lines[at], "=======\n", lines[at], ">>>>>>> theirs\n", *lines[at + 1 :]]
@@ -234,7 +234,7 @@ def _shifted(piece: str, by: int) -> str:
 
 
 def _flow(value: object) -> str:
-    """The value in YAML's flow style, in one line."""
+    """Return the value in YAML's flow style, in one line."""
     match value:
         case None:
             return "null"

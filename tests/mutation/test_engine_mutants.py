@@ -71,7 +71,7 @@ def test_the_changes_of_a_statement(tmp_path: Path) -> None:
 
 
 def shown(file: Path, code: str) -> list[str]:
-    """The changes of the statements in a function, each of which compiles."""
+    """Return the changes of the statements in a function, each of which compiles."""
     file.write_text("def f():\n" + "\n".join(f"    {line}" for line in code.splitlines()))
     source = Source(file)
     changes = [change for statement in source.statements[1:] for change in source.changes(statement.node)]
@@ -80,7 +80,7 @@ def shown(file: Path, code: str) -> list[str]:
 
 
 def engine(root: Path, **files: str) -> Engine:
-    """A small engine in a folder."""
+    """Write a small engine into a folder, and return it."""
     for name, content in files.items():
         file = root / mutants.ENGINE / f"{name}.py"
         file.parent.mkdir(parents=True, exist_ok=True)

@@ -6,7 +6,7 @@ import pytest
 
 from tests.mutation.__main__ import WELL, survey, table
 
-pytestmark = pytest.mark.rest  # dear
+pytestmark = pytest.mark.rest  # expensive
 
 SEED = 20_000
 

@@ -21,7 +21,7 @@ class Sheet:
         self.nodes = [path for path in document.spans if path]
 
     def value(self, path: NodePath) -> object:
-        """The plain data at a path."""
+        """Return the plain data at a path."""
         node = self.document.data
         for step in path:
             node = node[step]
@@ -34,12 +34,12 @@ class Sheet:
         return start, start + len(self.text[start:end].rstrip())
 
     def source(self, path: NodePath, *, key: bool = False) -> str:
-        """The text of a value or of its key."""
+        """Return the text of a value or of its key."""
         start, end = self.offsets(self.document.place(path, key=key))
         return self.text[start:end]
 
     def replaced(self, path: NodePath, new: str, *, key: bool = False) -> str:
-        """The text with another value or key at a path."""
+        """Return the text with another value or key at a path."""
         start, end = self.offsets(self.document.place(path, key=key))
         return self.text[:start] + new + self.text[end:]
 

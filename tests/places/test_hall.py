@@ -1,4 +1,4 @@
-"""Lint's plan of a hall: the same as MuJoCo's, seen from above; and the ways through it."""
+"""Lint's plan of a hall agrees with MuJoCo's, seen from above; and the ways through it."""
 
 from math import cos, pi, sin
 from pathlib import Path

@@ -28,7 +28,7 @@ Start = Callable[..., Guarded[str]]
 
 @pytest.fixture
 def start(copy: Path, broker: RabbitMQ) -> Iterator[Start]:
-    """Starts `lumen run --only …` in a process of its own."""
+    """A function that starts `lumen run --only …` in a process of its own."""
     with ExitStack() as stack:
 
         def run(only: str, *words: str, speed: str = SPEED, program: Sequence[str] = ("-m", "lumen")) -> Guarded[str]:
@@ -121,7 +121,7 @@ def test_a_robot_that_is_killed_between_performing_and_saying_so_performs_once(
     dying = Guarded([sys.executable, "-c", DYING, *line], stdout=DEVNULL, stdin=DEVNULL)
 
     def send() -> None:
-        """As a brain does that hears nothing: again and again, under one id."""
+        """Send the command as a brain does that hears nothing: again and again, under one id."""
         bus.publish("avatar.NAO.command", {"id": "once", "type": "motion", "method": "dance"})
 
     until(lambda: send() or dying.poll() is not None)

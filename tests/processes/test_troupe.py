@@ -183,7 +183,7 @@ def test_a_robot_that_a_person_stopped_wakes_for_a_hand_on_its_head_and_for_resu
         troupe.ear.publish("avatar.NAO.command", body, ttl=2.0)
 
     def refused() -> bool:
-        """Whether Ada is named to who would wake it."""
+        """Return whether a report to the other sender of the command names Ada."""
         return any(report["id"].startswith("theirs") and "Ada" in report.get("reason", "") for report in reports.bodies)
 
     troupe.insist(wake, refused)

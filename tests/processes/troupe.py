@@ -1,6 +1,6 @@
 """The parts of an exhibition, each with a bus, a clock and a loop of its own as in its own process.
 
-Their clocks are real ones: in one loop who follows the robot's time would make the robot wait for it.
+Their clocks are real ones: in one loop, a member that follows the robot's time would make the robot wait for it.
 """
 
 import threading
@@ -105,7 +105,7 @@ class RoundClock(RealClock):
 
 
 class Member:
-    """One process, its parts, and what stands behind it."""
+    """One process of an exhibition, with its parts."""
 
     def __init__(
         self, folder: Path, url: str, names: tuple[str, ...], story: str, name: str, speed: str, outside: RoundTime
@@ -162,7 +162,7 @@ class Troupe:
         return member
 
     def play(self) -> tuple[Member, Member]:
-        """A robot that follows a brain, which is idle."""
+        """Start a robot and a brain; return both once the robot follows the brain, which is idle."""
         robot, brain = self.join("robot"), self.join("brain")
         self.until(lambda: "idle" in brain.states and robot.process.presence.find(BRAIN))
         self.rounds(5)

@@ -16,7 +16,7 @@ Happenings = list[tuple[str, Any] | None]
 
 
 def states_of(data: Data, path: str = "") -> Iterator[tuple[str, Data]]:
-    """Every state below, by path, in the order of the file."""
+    """Yield every state below, by path, in the order of the file."""
     for key, state in (data.get("states") or {}).items():
         below = f"{path}.{key}".lstrip(".")
         yield below, state
@@ -25,7 +25,7 @@ def states_of(data: Data, path: str = "") -> Iterator[tuple[str, Data]]:
 
 @st.composite
 def edits(draw: st.DrawFn, before: Data) -> Data:
-    """The behaviour with one to three edits, some of them careless; it may be no machine any more."""
+    """Draw the behaviour with one to three edits, some of them careless; it may be no machine any more."""
     data = deepcopy(before)
     for _ in range(draw(st.integers(1, 3))):
         draw(st.sampled_from([renaming, deletion, insertion, regrouping, retiming, redoing, rescuing]))(draw, data)
@@ -80,7 +80,7 @@ def regrouping(draw: st.DrawFn, data: Data) -> None:
 
 
 def retiming(draw: st.DrawFn, data: Data) -> None:
-    """Let states be left after another while."""
+    """Let states be left after another time."""
     for _, state in states_of(data):
         if "after" in state and draw(st.booleans()):
             [(_, row)] = state["after"].items()
@@ -95,14 +95,14 @@ def redoing(draw: st.DrawFn, data: Data) -> None:
 
 
 def rescuing(draw: st.DrawFn, data: Data) -> None:
-    """Say where to go when states are gone."""
+    """Let a reload go to some state if the active states are gone."""
     for _, state in [("", data), *states_of(data)]:
         if state.get("states") and draw(st.booleans()):
             state["onReload"] = "#" + draw(st.sampled_from([path for path, _ in states_of(data)]))
 
 
 def built(data: Data) -> Machine | None:
-    """The machine, None where the edits broke it: a reload never sees it."""
+    """Return the machine, None if the edits broke it: a reload never sees such a file."""
     with suppress(LumenError):
         return Machine.from_dict(data)
     return None

@@ -41,7 +41,7 @@ RENAMING = [
 
 
 def edited(*edits: tuple[str, str, str]) -> Project:
-    """The shipped project with these replacements."""
+    """Return the shipped project with these replacements."""
     naming = ("behaviors/stories/", "behaviors/sayings/")  # these name the states
     files = {name: content for name, content in FILES.items() if not name.startswith(naming)}
     files["lumen.yaml"] = files["lumen.yaml"].replace(b"story: visitor", b"")

@@ -23,7 +23,7 @@ PATIENT = settings(
 
 
 def assert_sound(machine: Machine, snapshot: Snapshot) -> None:
-    """A legal configuration, with nothing waiting for a state that is not active; and it can be stored."""
+    """Check that the configuration is legal, that nothing waits for an inactive state, and that it can be stored."""
     assert deserialize(machine, serialize(machine, snapshot)) == snapshot
     for inner, stands in running(machine, snapshot):
         names = stands.configuration
@@ -48,7 +48,7 @@ def test_a_plan_is_legal_and_goes_on(data: st.DataObject, old: Data, events: Hap
 
 
 def legal(data: st.DataObject, old: Data, events: Happenings, later: Happenings) -> None:
-    """Or it is refused, or waits for a `do` that is under way; with `now` nothing waits."""
+    """Check that a reload is sound, or refused, or waits for a `do` that is under way; with `now` nothing waits."""
     before, after = Machine.from_dict(old), built(data.draw(edits(old) | machine_data(deeds=True)))
     for snapshot in snapshots(before, events) if after else ():
         first = migrate(before, after, snapshot, at=snapshot.at + 0.01)

@@ -29,7 +29,7 @@ TOUR: dict[str, Any] = {
 
 
 def talk(states: dict[str, Any], **more: Any) -> dict[str, Any]:
-    """The tour with other states in `talk`, and more keys of it."""
+    """Return the tour with other states in `talk`, and more keys of it."""
     changed = {**TOUR["states"]["talk"], "states": states, **more}
     return {**TOUR, "states": {**TOUR["states"], "talk": changed}}
 
@@ -235,7 +235,7 @@ def test_the_visitors_name_under_another_name() -> None:
 
 
 def test_timers() -> None:
-    """A changed delay counts from when it was set, a new one from now, one that is gone does not come."""
+    """A changed delay counts from when it was set, a new one from now; a removed one does not fire."""
     changed = planned(ASKING, talk({"ask": {**ASK, "after": {"7s": "dance", "1min": "dance"}}, "dance": DANCE}))
     assert [(t.event, t.due) for t in changed.snapshot.timers] == [
         ("after.30s.talk", 31.0),

@@ -27,7 +27,7 @@ from tests.tables import for_each
 
 
 class Seen(Observer):
-    """The names of all events that the behaviour took, and when the robot answered what."""
+    """Keeps the names of all events that the behaviour took, and the times of the robot's answers."""
 
     def __init__(self) -> None:
         self.events: list[str] = []
@@ -164,7 +164,7 @@ def test_no_message_is_lost_while_routes_come_and_go() -> None:
 
 @pytest.mark.parametrize("part", ["approvals", "recorder"])
 def test_where_going_on_with_other_files_fails_all_is_as_before(part: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A fault in Lumen itself, in the last step of the reload."""
+    """The fault is in Lumen itself, in the last step of the reload."""
     project = exhibits.project(behaviors={"tour": DANCING})
     exhibition, _ = running(project)
     runtime, other = exhibition.runtime, replace(project, languages=("nl", "en"))

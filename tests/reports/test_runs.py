@@ -154,7 +154,7 @@ def test_an_error_that_ended_a_do_fails_a_story_that_does_not_expect_it(
 def test_after_a_failed_action_a_run_does_not_end_well(
     behavior: str, code: int, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Also an action outside of a `do`: in an `entry` or a transition."""
+    """This holds for an action outside of a `do`, too: in an `entry` or a transition."""
     root = exhibition(tmp_path, behavior, TOUCH)
     assert run(root, "--story", "visitor") == code
     told = capsys.readouterr().out

@@ -138,7 +138,7 @@ def test_an_error_of_a_driver_names_its_line(root: Path) -> None:
 
 
 def promises(root: Path, name: str) -> tuple[int, str]:
-    """The exit code of pytest and what it prints, with the options that a user passes."""
+    """Return the exit code of pytest and its output, with the options that a user passes."""
     line = [
         sys.executable,
         "-m",

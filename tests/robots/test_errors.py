@@ -1,4 +1,4 @@
-"""Each cause for which a robot can't be used, or can't do what it should, has its class: one may catch it alone."""
+"""Each reason why a robot is unusable or fails has its own class, so it can be caught alone."""
 
 import time
 from collections.abc import Callable, Iterator

@@ -12,7 +12,7 @@ PARTS = {Say: {"voice"}, Posture: {"head", "arms", "legs"}, Look: {"head"}, Rest
 
 
 class Fake:
-    """Lasts until `until`; once cancelled, `balance` longer than the moment of cancelling."""
+    """An activity that lasts until `until` [s]; after a cancellation it lasts `balance` [s] longer."""
 
     def __init__(self, command: RobotCommand, now: float, balance: float) -> None:
         self.until, self.balance, self.now = now + 2.0, balance, now
@@ -129,7 +129,7 @@ def test_a_fall_fails_all() -> None:
 
 
 class Endless(Fake):
-    """Moves until it is ended."""
+    """An activity that moves until it is ended."""
 
     def __init__(self, command: RobotCommand, now: float) -> None:
         super().__init__(command, now, 0.5)

@@ -36,7 +36,7 @@ class Told(CommandListener):
 
 
 def held_again(folder: Path, *listeners: HoldListener) -> PersonHold:
-    """The hold of a run after those that kept theirs in this folder."""
+    """Return the hold of a run after other runs that kept theirs in this folder."""
     kept = KeptHold(folder)
     hold = PersonHold(kept, *listeners)
     kept.restore(hold)
