@@ -1,7 +1,7 @@
 """The processor time of tests: `--cpu-limit SECONDS` lists those that exceed it, and prints the sum.
 
-Processor time, since a crowded machine lets any test wait. Counted are a test's setup and teardown, and the processes
-that it has waited for; what it shares with others is counted for whoever comes first.
+Processor time, since a crowded machine lets any test wait. A test's setup and teardown count, and the processes that it
+has waited for; a shared fixture counts for the first test that uses it.
 """
 
 import os
@@ -49,5 +49,5 @@ def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter, config: p
 
 
 def cpu_time() -> float:
-    """Of this process and of those that it has waited for [s]."""
+    """Return the processor time of this process and of those that it has waited for [s]."""
     return sum(os.times()[:4])

@@ -1,4 +1,4 @@
-"""Where Erlang finds what a RabbitMQ of the tests is made of: in few folders, since each module is looked for in all.
+"""Links the modules of the tests' RabbitMQ into few folders, since Erlang looks for each module in every folder.
 
 With the installed folders, a start looks for 43,000 files that do not exist, which costs a third of its
 processor time.
@@ -17,7 +17,7 @@ NEEDED = ("amqp10_client",)
 
 
 def link_modules(folder: Path, erlang: Path, rabbitmq: Path, plugins: Sequence[str] = ()) -> None:
-    """Fill `links` in the folder with the plugins that may be enabled, and `modules` with the modules of all there is.
+    """Link the plugins that may be enabled into `links` in the folder, and all modules into `modules`, once.
 
     `erlang` and `rabbitmq` are their installation folders; `plugins` are enabled too, with their dependencies.
     """

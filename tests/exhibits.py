@@ -50,14 +50,14 @@ SENSES = {"image": 0.066, "joint": 0.06, "sonar": 0.1, "tactile": 0.1, "battery"
 
 
 def messages() -> dict[str, dict[str, object]]:
-    """The shipped message schemas by name."""
+    """Return the shipped message schemas by name."""
     return {
         path.name.removesuffix(ENDING): json.loads(path.read_text("utf-8")) for path in matching(MESSAGES, f"*{ENDING}")
     }
 
 
 def project(**changes: object) -> Project:
-    """The project, with these fields of `Project` set otherwise."""
+    """Return the project, with other values for these fields of `Project`."""
     out = {n: Route(n, f"avatar.{{robot}}.data.{n}", Direction.OUT, n, every=every) for n, every in SENSES.items()}
     face = Route("face", "lumen.visual.face.detection", Direction.IN, "face.detection", event="face")
     command = Route("command", "avatar.{robot}.command", Direction.IN, "command")

@@ -13,7 +13,7 @@ from tests.provided import not_provided
 
 @cache
 def fetched(name: str) -> Path:
-    """The folder `.cache/NAME` with all that the table has under it.
+    """Return the folder `.cache/NAME` with all that the table has under it.
 
     Fails the test if fetching fails; skips it if this machine has no npm and could not be given one.
     """

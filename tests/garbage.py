@@ -1,14 +1,14 @@
-"""No garbage collection while tests are collected, and none of collected objects: it cost a quarter of the time.
+"""No garbage collection while tests are collected, and none of collected objects: it would cost a quarter of the time.
 
 Objects of modules and tests live until the end; a full collection takes 0.2 s each time. The cache of the
-projects that tests have read lives as long, and grows to 1.7 million objects. So full collections are rare: they were a
-sixth of the time of tests/lint.
+projects that tests have read lives as long, and grows to 1.7 million objects. So full collections are rare: they would
+take a sixth of the time of tests/lint.
 """
 
 import gc
 
 THRESHOLDS = 5000, 10, 100
-"""After how many new objects the youngest are searched, and after how many searches those that are older."""
+"""The number of new objects after which the youngest are searched, and of searches after which older ones are."""
 
 gc.disable()
 

@@ -1,8 +1,7 @@
 """Marks of tests that need a broker, physics or npm: derived from the names in their code, for every test.
 
-Looked through are a test, its fixtures and parameters, and what they name of the helpers of tests. Not seen is what a
-test reaches by a string (`getfixturevalue`, the words of a command line): such a test is marked by hand, as are `slow`
-ones.
+The code of a test, of its fixtures and parameters, and of the helpers that they name is searched. Names in a string are
+not found (`getfixturevalue`, the words of a command line): such a test is marked by hand, as are `slow` ones.
 """
 
 from collections.abc import Iterable, Iterator
@@ -45,7 +44,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 
 
 def grouped(items: Iterable[pytest.Item]) -> list[pytest.Item]:
-    """Tests for several workers: those that share something belong to one, and what takes long begins first.
+    """Return the tests for several workers: those that share something belong to one, and long ones begin first.
 
     Tests with a broker wait most of the time, the others calculate: they take turns.
     """
@@ -66,12 +65,12 @@ def has(group: Iterable[pytest.Item], mark: str) -> bool:
 
 
 def shared(item: pytest.Item) -> str:
-    """With which tests one is to have a worker, if it has no group yet: those of its file."""
+    """Return the group of a test that has none yet: its file, whose tests have the same worker."""
     return item.nodeid.partition("::")[0]
 
 
 def parameters(item: pytest.Function) -> Iterator[Any]:
-    """The values of a parametrized case and of all rows of a table (`tests.tables.for_each`)."""
+    """Yield the values of a parametrized case and of all rows of a table (`tests.tables.for_each`)."""
     yield from item.callspec.params.values() if hasattr(item, "callspec") else ()
     for row in getattr(item.function, "rows", ()):
         yield from row.given.values()
@@ -105,7 +104,7 @@ def marks(thing: Any) -> frozenset[str]:
 
 
 def home(thing: Any) -> str:
-    """The module that a function, class or module comes from; empty for anything else."""
+    """Return the module that a function, class or module comes from; empty for anything else."""
     return thing.__name__ if isinstance(thing, ModuleType) else str(getattr(thing, "__module__", None) or "")
 
 
@@ -123,7 +122,7 @@ def named(thing: Any) -> Iterator[Any]:
 
 
 def names(code: CodeType) -> Iterator[str]:
-    """The names in a function's code, and in that of functions within it."""
+    """Yield the names in a function's code, and in that of functions within it."""
     yield from code.co_names
     for constant in code.co_consts:
         if isinstance(constant, CodeType):

@@ -23,7 +23,7 @@ EXPECTED, NAME = "expected", "name"
 LINES, CHARACTERS = 5, 600
 """The longest finding above a traceback."""
 STEP = 10
-"""Without a terminal there is a line each time that so many percent more are done [%]."""
+"""The progress between two lines, without a terminal [%]."""
 PAUSE, REDRAW = 5.0, 0.2
 """The least time between two of these lines, and between two drawings of the one on a terminal [s]."""
 REASONS = 12

@@ -1,4 +1,4 @@
-"""A private RabbitMQ for the tests: on loopback only, as whoever runs them, gone when they end, however they end.
+"""A private RabbitMQ for the tests: on loopback only, run by the user who runs them, and ended with them in any case.
 
 `broker` (servers.py) is a virtual host of the run's broker; a test that kills its broker, or needs TLS or a plug-in,
 starts one of its own with `RabbitMQ()`. As a program (`make broker`) it is one for whoever develops a module, until
@@ -99,11 +99,11 @@ class RabbitMQ:
         self._names: Guarded[bytes] | None = None
 
     def url_of(self, user: str) -> str:
-        """The address for one of `USERS`, whose password is the same as the name."""
+        """Return the address for one of `USERS`, whose password is the same as the name."""
         return f"amqp://{user}:{user}@{self.place()}"
 
     def place(self, port: int = 0) -> str:
-        """The last part of an address: of this broker, or of a relay in front of it."""
+        """Return the last part of an address: of this broker, or of a relay in front of it."""
         return f"127.0.0.1:{port or self.port}/{self.host}"
 
     @property
@@ -154,7 +154,9 @@ class RabbitMQ:
             time.sleep(0.1)
 
     def _settings(self) -> list[str]:
-        """Users, and where there is a certificate (`server.pem`, `server.key`, signed by `ca.pem`) a port for TLS."""
+        """Return the settings: users, and with a certificate (`server.pem`, `server.key`, signed by `ca.pem`) a port
+        for TLS.
+        """
         settings = [f"load_definitions = {self.folder}/definitions.json"]
         if self._speaks_mqtt:
             settings += [f"mqtt.listeners.tcp.1 = 127.0.0.1:{self.mqtt}", "mqtt.allow_anonymous = false"]
@@ -243,7 +245,7 @@ class GivenBroker:
         pytest.skip(f"{GIVEN} names a broker that is not ours: what needs its users, its end or TLS is left out")
 
     def url_of(self, user: str) -> str:
-        """The address for a user: there is only the one that was given."""
+        """Return the address for a user: there is only the one that was given."""
         return self.url if user == "guest" else self.__getattr__("url_of")
 
 
@@ -293,7 +295,7 @@ def _hashed(password: str) -> str:
 
 
 def _installed() -> tuple[Path, str]:
-    """Beneath which folder RabbitMQ is installed, and the script that starts it."""
+    """Return the folder beneath which RabbitMQ is installed, and its script; skip or fail the test without it."""
     for root in ROOTS:
         if found := sorted(root.glob("usr/lib/rabbitmq/lib/rabbitmq_server-*/sbin/rabbitmq-server")):
             return root, str(found[-1])
@@ -301,7 +303,7 @@ def _installed() -> tuple[Path, str]:
 
 
 def _free_ports(count: int) -> list[int]:
-    """Below those that the system gives to clients: one of these would take the port of a broker that was killed."""
+    """Return free ports below those that the system gives to clients, which could take the port of a killed broker."""
     with ExitStack() as held:
         ports: list[int] = []
         while len(ports) < count:

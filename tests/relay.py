@@ -1,4 +1,4 @@
-"""A cable between a client and a broker: it can be cut without a word, refuse, be slow, and be whole again."""
+"""A cable between a client and a broker, which can be cut silently, refuse connections, be slow, and be mended."""
 
 import selectors
 import socket
@@ -72,7 +72,7 @@ class Relay:
                 thread.start()
 
     def _connect(self, near: socket.socket) -> None:
-        """A cut cable neither connects nor refuses a client."""
+        """Forward a connection; a cut cable neither connects nor refuses a client."""
         self._ends.append(near)
         with near, suppress(OSError), selectors.DefaultSelector() as selector:
             self._whole.wait()
@@ -83,7 +83,7 @@ class Relay:
                 self._forward(selector)
 
     def _forward(self, selector: selectors.BaseSelector) -> None:
-        """Until one of the ends is closed."""
+        """Forward bytes until one of the ends is closed."""
         under_way: deque[tuple[float, Any, bytes]] = deque()
         while not self._ending:
             for key, _ in selector.select(LOOK if under_way else 0.5):

@@ -4,7 +4,7 @@ from pathlib import Path
 
 
 def matching(folder: Path, *patterns: str) -> list[Path]:
-    """The files beneath a folder that match any of the patterns, in order; fails if one of these matches nothing."""
+    """Return the sorted files beneath a folder that match a pattern; fail if one of the patterns matches nothing."""
     found: set[Path] = set()
     for pattern in patterns:
         files = list(folder.glob(pattern))

@@ -1,8 +1,8 @@
 """One browser and one broker for a run of pytest, however many workers it has; each test has a part of its own in them.
 
 The process that was called as `pytest` (with xdist: not its workers) listens on a port, of which its workers learn
-from the environment. Who asks there for a server gets the one of the run, which is started for the
-first who asks. Servers are guarded children of that process: they end with it, however it ends, and the processor time
+from the environment. A worker that asks there for a server gets the one of the run, which is started at the first
+request. Servers are guarded children of that process: they end with it, however it ends, and the processor time
 of a run includes theirs. A part ends with the worker that owns it: a browser context with its connection; and no one
 else is given a virtual host that was given once.
 """
@@ -160,7 +160,7 @@ class Servers:
 
 
 class Plugin:
-    """Has the servers of a run end with it."""
+    """Ends the servers of a run with it."""
 
     def __init__(self, servers: Servers) -> None:
         self._servers = servers

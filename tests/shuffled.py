@@ -80,7 +80,7 @@ def shuffled(items: Iterable[pytest.Item], order: random.Random) -> list[pytest.
 def mixed(
     items: Iterable[pytest.Item], key: Callable[[pytest.Item], str], order: random.Random
 ) -> Iterator[list[pytest.Item]]:
-    """The tests by that key, in random order."""
+    """Yield the tests of each key, the keys in random order."""
     groups: dict[str, list[pytest.Item]] = {}
     for item in items:
         groups.setdefault(key(item), []).append(item)

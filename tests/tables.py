@@ -117,7 +117,7 @@ def _both(one: Row, two: Row) -> Row:
 
 
 def _sentence(error: BaseException) -> str:
-    """The error's words and the line of the tests that raised it."""
+    """Return the error's words and the line of the tests that raised it."""
     words = str(error).strip() if isinstance(error, AssertionError) else f"{type(error).__name__}: {error}".strip()
     places = list(_places(error))
     return "\n  ".join([*words.splitlines(), *(f"({place})" for place in places[-1:])])

@@ -11,13 +11,13 @@ from typing import Any
 HANG = 300.0
 """The bound of every wait for something real: a slow and loaded machine stays far below it [s]."""
 IDLE = 9.0
-"""The pause between two looks, in multiples of the time that a look took,"""
+"""The pause between two looks, in multiples of the time that a look took."""
 LONGEST_PAUSE = 0.25
-"""but no longer than this [s]."""
+"""The longest such pause [s]."""
 
 
 class Collector:
-    """A handler that keeps what it is handed, and lets a test wait for it."""
+    """A handler that keeps the messages that it is handed, and lets a test wait for them."""
 
     def __init__(self) -> None:
         self.messages: list[Any] = []
@@ -53,12 +53,12 @@ def until(
     meanwhile: Callable[[], object] | None = None,
     shown: Callable[[], object] | None = None,
 ) -> None:
-    """Return once the condition holds, which is looked at `every` so often [s]; fail after `timeout` [s].
+    """Return once the condition holds, which is tested after pauses of `every` [s]; fail after `timeout` [s].
 
     The failure names the condition: in the words of `what`, else by its source text, with the variables it reads; and
     it ends with what `shown` returns, as a transcript. `meanwhile` is called between two looks, in place of a pause.
-    A look that takes long, as one through a browser does, is followed by a longer pause: who waits leaves the machine
-    to the awaited work.
+    A test that takes long, as one through a browser does, is followed by a longer pause, which leaves the machine to
+    the awaited work.
     """
     deadline = time.monotonic() + timeout
     pause = threading.Event()
@@ -85,7 +85,7 @@ def finished(thread: threading.Thread) -> None:
 
 
 def threads(prefix: str = "") -> set[threading.Thread]:
-    """Return the threads whose name begins so: compared as sets, for those of other tests may end late."""
+    """Return the threads whose names begin with `prefix`. Compare sets, since those of other tests may end late."""
     return {thread for thread in threading.enumerate() if thread.name.startswith(prefix)}
 
 

@@ -28,7 +28,7 @@ def test_each_change_is_in_the_result_or_reported() -> None:
     assert set(found.outcomes) == {"in the result", "listed", "refused"}
 
 
-@pytest.mark.rest  # dear; the first hundred of them are in `make test`
+@pytest.mark.rest  # expensive; the first hundred of them are in `make test`
 @pytest.mark.slow
 @pytest.mark.parametrize("batch", range(4))
 def test_each_of_two_thousand_changes_is_in_the_result_or_reported(batch: int) -> None:

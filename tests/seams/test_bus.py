@@ -22,7 +22,7 @@ Connect = Callable[[], Bus]
 
 @pytest.fixture(params=KINDS)
 def another(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Connect]:
-    """Makes handles on one bus."""
+    """A function that makes handles on one bus."""
     if request.param == "amqp":
         broker = request.getfixturevalue("broker")
         yield lambda: connect(broker.url)

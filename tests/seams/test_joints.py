@@ -57,12 +57,12 @@ COMMANDS: tuple[RobotCommand, ...] = (
     Posture("Crouch", 1.0),
 )
 KEPT = COMMANDS[-1:]
-"""Of these, the commands that ask for nothing beyond the limits."""
+"""The commands of these that ask for nothing beyond the limits."""
 
 
 @dataclass
 class Obedient:
-    """A robot that does at once all that it is told, and remembers it: `told` beside where its joints stood."""
+    """A robot that performs each command at once; `told` has the commands, each with the joints' angles before it."""
 
     body: Body = NAO
     clock: VirtualClock = field(default_factory=VirtualClock)
@@ -87,7 +87,7 @@ class Obedient:
             self.answers.append(Event(f"done.command.{id}", None, 0.0))
 
     def cancel(self, id: str) -> None:
-        """Everything is over at once."""
+        """Do nothing: everything is over at once."""
 
     def poll(self) -> Sequence[Event]:
         answers, self.answers = self.answers, []
@@ -134,7 +134,7 @@ def faults(robot: Obedient) -> list[str]:
 
 
 def opened(folder: Path, robot: Obedient) -> Exhibition:
-    """The shipped exhibition with a behaviour that asks for too much."""
+    """Return the shipped exhibition with a behaviour that asks for too much."""
     copied(folder)
     shutil.rmtree(folder / "behaviors")
     (folder / "behaviors").mkdir()
@@ -212,7 +212,7 @@ def test_what_it_can_not_perform_is_refused_and_not_told() -> None:
 
 
 def test_no_sender_moves_a_joint_beyond_its_limits(tmp_path: Path) -> None:
-    """The behaviour, its controller and its life, modules on the bus, and a program in this process."""
+    """Senders are the behaviour, its controller and its life, modules on the bus, and a program in this process."""
     own = Obedient()
     with opened(tmp_path, own) as exhibition:
         exhibition.run(seconds=1)

@@ -1,4 +1,4 @@
-"""A robot, hall, bus or clock of one's own works without its optional methods, and is refused without a needed one."""
+"""A custom robot, hall, bus or clock works without its optional methods, and is refused without a needed one."""
 
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
@@ -92,7 +92,7 @@ class GiftedRobot:
         self.calls.append("close")
 
     def advance(self, dt: float) -> None:
-        """Everything is over at once."""
+        """Do nothing: everything is over at once."""
 
     def place(self, visitor: Visitor | None) -> None:
         self.visitor = visitor
@@ -128,7 +128,7 @@ class GiftedClock:
         return self.time
 
     def hurry(self) -> None:
-        """It never sleeps."""
+        """Do nothing: this clock never sleeps."""
 
 
 class GiftedBus(Bus):
@@ -162,7 +162,7 @@ class GiftedBus(Bus):
         return True
 
     def returns(self, handler: Callable[[str], None]) -> None:
-        """Every message has a receiver."""
+        """Do nothing: every message has a receiver."""
 
 
 def methods_of(kind: type) -> set[str]:

@@ -34,7 +34,7 @@ def remote() -> Iterator[Made]:
 
 
 def performed_by(model: str) -> Project:
-    """The shipped exhibition with that body."""
+    """Return the shipped exhibition with that body."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv(MODEL_VARIABLE, model)
         return lumen.load(ROOT)
@@ -89,7 +89,7 @@ def test_a_lantern_refuses_there_as_it_does_here(remote: Made, command: RobotCom
 
 
 def test_without_a_head_nothing_looks_and_nothing_is_tracked(remote: Made, tmp_path: Path) -> None:
-    """The same words from lint, from the robot here and there, and in the transcript of the one who asked."""
+    """Lint, the robot here and there, and the transcript of the caller use the same words."""
     folder = copied(tmp_path)
     model = folder / "models" / "lantern.yaml"
     model.write_text(model.read_text("utf-8").replace("  head: {yaw: turn, pitch: nod, roll: tilt}\n", ""), "utf-8")

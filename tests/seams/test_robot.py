@@ -247,7 +247,7 @@ BEYOND = (
 
 @pytest.mark.parametrize("command", BEYOND, ids=["look", "far", "hasty"])
 def test_no_command_leaves_the_limits(robot: Body, project: Project, command: RobotCommand) -> None:
-    """With its life beside; a robot with a body may sag or swing by 0.05 rad."""
+    """Its life moves it at the same time; a robot with a body may sag or swing by 0.05 rad."""
     robot.start("", Live(project.life["lively"]))
     robot.start("a", command)
     answers: list[str] = []

@@ -121,7 +121,7 @@ def test_everybody_in_a_flood_gets_an_answer(caplog: pytest.LogCaptureFixture) -
 
 
 def test_nothing_waits_for_long_behind_a_flood() -> None:
-    """Of texts and motions as many are taken as are over in 15 s, and the one after them; the rest is answered."""
+    """The server takes as many texts and motions as are over in 15 s, and one more; it answers the others at once."""
     stand = Stand()
     caller = Caller(stand)
     for i in range(40):
@@ -156,7 +156,7 @@ def test_who_comes_just_before_the_end_gets_an_answer() -> None:
 
 
 def routed(**changes: Any) -> dict[str, Any]:
-    """The project's routes, that of commands otherwise."""
+    """Return the project's routes, with these changes of the one for commands."""
     return {"routes": {**PROJECT.routes, "command": replace(PROJECT.routes["command"], **changes)}}
 
 

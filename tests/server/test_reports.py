@@ -21,7 +21,7 @@ PROJECT = project(messages=messages())
 
 
 class Desk:
-    """A hosted recording robot, and a module that hears what becomes of its commands."""
+    """A hosted recording robot, and a module that receives the reports on its commands."""
 
     def __init__(self) -> None:
         self.robot, self.bus = RecordingRobot(BODY), validated(connect("memory://"), PROJECT)

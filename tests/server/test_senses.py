@@ -133,7 +133,7 @@ def test_a_sense_that_fails_where_time_waits_is_off_until_another_bundle() -> No
 
 
 def failing(sense: str) -> Any:
-    """A stand-in for a robot that can't provide a sense."""
+    """Return a stand-in for a robot that can't provide a sense."""
 
     def publish(key: str, body: dict[str, Any], **_: Any) -> None:
         if key.endswith(sense):
@@ -228,7 +228,7 @@ def test_another_bundle_gives_the_camera_another_chance() -> None:
 
 
 def wrong(sense: str) -> Project:
-    """A project whose message schema does not fit the bodies of that sense."""
+    """Return a project whose message schema does not fit the bodies of that sense."""
     return project(messages={**PROJECT.messages, sense: {"required": ["nobody has this"]}})
 
 

@@ -21,7 +21,7 @@ def read(path: Path) -> Mapping[str, Any]:
 
 
 def play(case: Mapping[str, Any]) -> list[tuple[Mapping[str, Any], Mapping[str, Any]]]:
-    """For each step of a case what was expected and what came of it, the keys expected only.
+    """Return the expectation and the outcome of each step of a case, both with the expected keys only.
 
     Steps are `start` (again, from the beginning), `send` with `data`, and `wait` [s].
     """
@@ -47,7 +47,7 @@ def play(case: Mapping[str, Any]) -> list[tuple[Mapping[str, Any], Mapping[str, 
 
 
 def outcome(steps: list[Step], interpreter: Interpreter) -> dict[str, Any]:
-    """Everything that a case may expect of some steps; the configuration in document order."""
+    """Return everything that a case may expect of some steps; the configuration in document order."""
     commands = [command for step in steps for command in step.commands]
     return {
         "exited": [name for step in steps for name in step.exited],

@@ -22,7 +22,7 @@ Happenings = list[tuple[str, Any] | None]
 
 
 def happen(snapshot: Snapshot, happening: tuple[str, Any] | None, number: int) -> Event:
-    """An event from outside, or by turns the next timer, an answer and a refusal of the last command awaited."""
+    """Return an event from outside, or by turns the next timer, an answer and a refusal of the last command awaited."""
     if happening is not None:
         return Event(*happening, to_the_nanosecond(snapshot.at + 0.05))  # as a clock shows it
     if number % 3 == 0 and (event := due(snapshot)):
@@ -32,7 +32,7 @@ def happen(snapshot: Snapshot, happening: tuple[str, Any] | None, number: int) -
 
 
 def run(machine: Machine, events: Happenings, snapshot: Snapshot | None = None, first: int = 0) -> list[Step]:
-    """The steps until the end, or until the machine does not come to rest."""
+    """Return the steps until the end, or until the machine does not come to rest."""
     steps: list[Step] = []
     with suppress(LumenError):
         if snapshot is None:
@@ -45,7 +45,7 @@ def run(machine: Machine, events: Happenings, snapshot: Snapshot | None = None, 
 
 
 def as_data(steps: list[Step], machine: Machine) -> list[Any]:
-    """Steps of different Machine objects, to compare."""
+    """Return steps as data, in which those of different Machine objects can be compared."""
     return [(*s[:4], s.raised, serialize(machine, s.snapshot)) for s in steps]
 
 
@@ -65,7 +65,7 @@ def test_what_was_on_the_disk_goes_on_as_if_it_had_not_been(data: Data, events: 
 
 
 def settled(machine: Machine, saved: str) -> str:
-    """The snapshot after everything that is due at its own time."""
+    """Return the snapshot after everything that is due at its own time."""
     snapshot = deserialize(machine, json.loads(saved))
     while (event := due(snapshot)) and event.at <= snapshot.at:
         snapshot = step(machine, snapshot, event).snapshot
@@ -103,7 +103,7 @@ WRONG = [
 
 
 def places(value: Any, path: tuple[Any, ...] = ()) -> Iterator[tuple[Any, ...]]:
-    """The path of every node but the root."""
+    """Yield the path of every node but the root."""
     items = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ()
     for key, item in items:
         yield (*path, key)

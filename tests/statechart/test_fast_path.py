@@ -52,7 +52,7 @@ ROWS = st.fixed_dictionaries(
 
 @st.composite
 def machines(draw: st.DrawFn) -> Machine:
-    """A random machine of two regions or states; it checks and assigns, and seldom does anything else."""
+    """Return a random machine of two regions or states; it checks and assigns, and seldom does anything else."""
 
     def leaf() -> dict[str, Any]:
         data: dict[str, Any] = {
@@ -80,7 +80,7 @@ def machines(draw: st.DrawFn) -> Machine:
 
 
 def in_full(machine: Machine, snapshot: Snapshot, event: Event) -> Step:
-    """The step without the fast path."""
+    """Return the step without the fast path."""
     return process(open_context(compiled(machine), snapshot, event, max(event.at, snapshot.at)), event)
 
 
@@ -93,7 +93,9 @@ EVENTS = st.builds(
 
 
 def quick(machine: Machine, snapshot: Snapshot, event: Event) -> Step | None:
-    """The step by a function that was written for it: what happens again is, and then each way through its guards."""
+    """Return the step of the fast path, None without one; functions are written for events, and guards, that come
+    again.
+    """
     steps = [compiled(machine).fast_paths.step(snapshot, event) for _ in range(3)]
     return steps[-1]
 
@@ -151,7 +153,7 @@ def rows(draw: st.DrawFn) -> dict[str, Any]:
 
 @st.composite
 def lively(draw: st.DrawFn) -> Machine:
-    """A random machine that speaks, raises events, runs sequences of actions, and has history states."""
+    """Return a random machine that speaks, raises events, runs sequences of actions, and has history states."""
 
     def leaf(kind: str) -> dict[str, Any]:
         data: dict[str, Any] = {key: draw(SOME) for key in ("entry", "exit") if draw(st.booleans())}

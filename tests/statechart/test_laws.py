@@ -36,7 +36,7 @@ DEEDS: list[dict[str, Any]] = [
 
 @st.composite
 def trees(draw: st.DrawFn, invokes: list[str]) -> dict[str, Any]:
-    """A random behaviour: at most three levels, any target, no endless `always`; some states invoke one of these."""
+    """Draw a random behaviour: at most three levels, any target, no endless `always`; some states invoke `invokes`."""
     tree = draw(
         st.recursive(st.just({}), lambda t: st.dictionaries(st.sampled_from("abc"), t, min_size=1), max_leaves=8)
     )
@@ -88,7 +88,7 @@ def trees(draw: st.DrawFn, invokes: list[str]) -> dict[str, Any]:
 
 @st.composite
 def machines(draw: st.DrawFn) -> Machine:
-    """A random machine that may invoke others, which may invoke a third."""
+    """Return a random machine that may invoke others, which may invoke a third."""
     inner = draw(trees([]))
     outer = draw(trees(["inner"]))
     return Machine.from_dict(draw(trees(["inner", "outer"])), behaviors={"inner": inner, "outer": outer})
@@ -98,7 +98,7 @@ HAPPENINGS = st.lists(st.sampled_from([*EVENTS, "g", "tick", "answer", "refuse"]
 
 
 def last_awaited(snapshot: Snapshot) -> str:
-    """The id of the command that a `do` has awaited for the shortest time, anywhere in what runs; empty for none."""
+    """Return the id of the command that a `do` began to await last, in any running behaviour; empty if none waits."""
     ids = [id for position in snapshot.doing.values() for id in awaited(position) if id.startswith("d")]
     ids += [f"{id}@{owner}" for owner, c in snapshot.invoked.items() if (id := last_awaited(c.snapshot))]
     return max(ids, key=lambda id: int(id[1:].partition("@")[0]), default="")
@@ -113,7 +113,7 @@ def running(machine: Machine, snapshot: Snapshot) -> Iterator[tuple[Machine, Sna
 
 
 def happen(snapshot: Snapshot, what: str) -> Event:
-    """The event that a happening is in this snapshot: the next timer, or an answer to the last command awaited."""
+    """Return the event of a happening in this snapshot: the next timer, or an answer to the last awaited command."""
     if what == "tick":
         return due(snapshot) or Event("e", None, snapshot.at)
     if what in ("answer", "refuse"):
@@ -123,7 +123,7 @@ def happen(snapshot: Snapshot, what: str) -> Event:
 
 
 def run(machine: Machine, happenings: list[str], *, through_disk: bool = False) -> list[Step]:
-    """The steps until the end, or until the machine does not come to rest any more."""
+    """Return the steps until the end, or until the machine does not come to rest any more."""
     steps: list[Step] = []
     with suppress(LumenError):
         steps.append(initial(machine))
@@ -164,7 +164,7 @@ def keeps_the_laws(machine: Machine, happenings: list[str]) -> None:
 
 
 def is_legal(machine: Machine, names: frozenset[str]) -> None:
-    """Compound states have one active child, parallel ones all, what is not active none."""
+    """Check that compound states have one active child, parallel ones all, and inactive states none."""
     for state in machine.states.values():
         active = [c for c in state.children if machine.states[c].name in names]
         if state.path and state.name not in names:
@@ -183,7 +183,7 @@ def waits_in_active_states(machine: Machine, snapshot: Snapshot) -> None:
 
 
 def ends_once(steps: list[Step]) -> None:
-    """Each command that began ends once, and ids are never used again."""
+    """Check that each command that began ends once, and that no id is used again."""
     begun: list[str] = []
     ended: list[str] = []
     for taken in steps:

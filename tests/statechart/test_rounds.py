@@ -18,7 +18,7 @@ QUESTIONS = WORDS["lists"]["questions"]
 
 
 def quiz(words: Mapping[str, Any] = WORDS, **loop: Any) -> Machine:
-    """The quiz, its `for` otherwise where given."""
+    """Return the quiz, with these changes of its `for`."""
     data = deepcopy(dict(read(HERE / "quiz.yaml")))
     data["states"]["quiz"]["for"].update(loop)
     return Machine.from_dict(data, "quiz", words={"questions": words})

@@ -133,7 +133,7 @@ RICH: dict[str, Any] = {
 
 
 def rich() -> dict[str, Any]:
-    """A snapshot with something under every key."""
+    """Return a snapshot with something under every key."""
     it = Interpreter(machine(RICH))
     for event in ("", "out", "back"):
         it.send(event) if event else it.start()

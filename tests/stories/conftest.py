@@ -37,7 +37,7 @@ states:
 
 @pytest.fixture
 def story(copy: Path) -> Callable[..., Path]:
-    """Writes a story about the door; the folder of its project."""
+    """A function that writes a story about the door, and returns the folder of its project."""
     (copy / "behaviors" / "door.yaml").write_text(DOOR, "utf-8")
 
     def write(steps: str, head: str = "", name: str = "knocking") -> Path:

@@ -40,7 +40,7 @@ Play = Callable[[str], int]
 
 @pytest.fixture
 def play(tmp_path: Path) -> Play:
-    """Plays a story with these steps; the exit code of `lumen test`."""
+    """A function that plays a story with these steps, and returns the exit code of `lumen test`."""
     (tmp_path / "lumen.yaml").write_text(SETTINGS)
     for folder in ("behaviors/stories", "knowledge"):
         (tmp_path / folder).mkdir(parents=True)

@@ -1,4 +1,4 @@
-"""Exploring: what is found in small behaviours, what is not, and stories that lead there."""
+"""Exploration of small behaviours: what it finds, what it does not, and stories that lead there."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -25,7 +25,7 @@ def walked(
 
 
 def found(exploration: Exploration) -> list[tuple[str, str, int]]:
-    """Each finding: its kind, its state, and the moves of the way there."""
+    """Return the kind, the state and the number of moves of each finding."""
     return [(f.kind, f.state, len(f.path) - 1) for f in exploration.findings]
 
 

@@ -54,7 +54,7 @@ def walked(machine: Machine) -> StateSpaceSearch:
 
 
 def same_with_and_without(data: Any) -> None:
-    """The same states and transitions are reached, whether or not keys are left out of account."""
+    """Check that the same states and transitions are reached, whether or not keys are left out of account."""
     lively = walked(Machine.from_dict(data))
     original = Liveness.of
     Liveness.of = lambda self, configuration, history: self.keys  # type: ignore[method-assign]
@@ -81,7 +81,7 @@ def test_keys_that_can_not_matter_any_more_do_not_matter(one: Any, other: Any) -
 
 @st.composite
 def homes(draw: st.DrawFn) -> Any:
-    """A state with shallow or deep history, and two outside that lead back."""
+    """Return a state with shallow or deep history, and two outside that lead back."""
     home = draw(regions())
     if draw(st.booleans()):
         home["states"]["p"] = draw(regions("tuv")) | {"on": home["states"]["p"]["on"]}

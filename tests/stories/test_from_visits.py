@@ -1,4 +1,4 @@
-"""A recorded visit made into a story passes at once, and fails where the robot says something else."""
+"""A recorded visit made into a story passes at once, and fails if the robot says something else."""
 
 import json
 import os
@@ -29,7 +29,7 @@ from lumen.run.storytelling.visit_story import renaming, visit_story
 from tests import ROOT
 from tests.copying import copied_project
 
-pytestmark = pytest.mark.rest  # dear
+pytestmark = pytest.mark.rest  # expensive
 
 EXAMPLES = {"tour": ROOT, "museum": ROOT / "examples/museum", "minimal": ROOT / "examples/minimal"}
 LONG = {
@@ -39,9 +39,9 @@ LONG = {
     *(("tour", name) for name in ("safety_endless_wake", "safety_resume")),
     *(("museum", name) for name in ("closing", "german")),
 }
-"""Stories of many minutes, or with several visits: `make soak` tries them,"""
+"""Stories of many minutes, or with several visits, which only `make soak` tries."""
 SAMPLE = 8
-"""and what is not among so many of the others: `LUMEN_SEED=5` draws others."""
+"""The number of the other stories that are tried otherwise: `LUMEN_SEED=5` draws others."""
 
 
 def shipped() -> Iterator[Any]:
@@ -76,7 +76,7 @@ def recorded(folder: Path, story: str) -> list[RecordedVisit]:
 
 
 def read(folder: Path, text: str) -> Project:
-    """The project with that story as `found`, which lint has nothing against."""
+    """Return the project with that story as `found`; fail if lint has a finding about it."""
     files = {**read_files(folder), "behaviors/stories/found.yaml": text.encode()}
     project, findings = check_files(folder, files)
     assert project, findings
@@ -106,7 +106,7 @@ def test_every_visit_of_the_shipped_stories_is_a_story_that_passes(
 
 
 def _fails_where_something_else_is_said(project: Project) -> None:
-    """A story fails if any of its expected texts is replaced."""
+    """Check that a story fails if any of its expected texts is replaced."""
     story = project.stories["found"]
     for i, step in enumerate(story.steps):
         if isinstance(step.action, Expect) and step.action.said:

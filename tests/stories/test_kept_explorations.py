@@ -1,4 +1,4 @@
-"""The same files are explored once: what came of it is kept, and nothing else is taken for it."""
+"""The same files are explored once: the result is stored, and used for these files alone."""
 
 import json
 from collections.abc import Callable

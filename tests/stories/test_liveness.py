@@ -1,4 +1,4 @@
-"""Which keys of the context are left out of account, and which have to count: by ways that are found only so."""
+"""Keys of the context that exploration may ignore, and keys without which it would miss a state."""
 
 from typing import Any
 

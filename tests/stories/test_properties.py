@@ -28,7 +28,7 @@ properties:
 
 
 def broken(properties: dict[str, Any], states: dict[str, Any] = DOOR, **more: Any) -> list[tuple[str, list[str]]]:
-    """The state and the way, stimulus by stimulus, of each property that does not hold."""
+    """Return the state and the path, stimulus by stimulus, of each property that does not hold."""
     machine = Machine.from_dict({"states": states, "properties": properties, **more})
     walked = explore(machine, GO)
     found = [f for f in walked.findings if f.kind == "property"]

@@ -13,7 +13,7 @@ Answered = tuple[dict[str, Any], str, float]
 
 
 def visit(*answered: Answered) -> RecordedVisit:
-    """A visit in which the robot answers each command as given, after a delay [s]; an empty answer never comes."""
+    """Return a visit in which the robot answers each command as given, after a delay [s]; or never, if it is empty."""
     inputs, at = [], 0.0
     for number, (command, how, took) in enumerate(answered):
         start = {"Start": {"id": f"d{number}", "command": command}}

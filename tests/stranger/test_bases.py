@@ -29,7 +29,7 @@ states:
 
 
 def lantern_hall(folder: Path, base: str) -> Path:
-    """A project in which Lantern walks, with a base of its own."""
+    """Write a project in which Lantern walks, with a base of its own, and return it."""
     root = shutil.copytree(ROOT / "examples/minimal", folder / "hall")
     main = (root / "lumen.yaml").read_text()
     (root / "lumen.yaml").write_text(main.replace("model: nao", "model: lantern").replace("story:", "# story:"))

@@ -20,7 +20,7 @@ def robot(request: pytest.FixtureRequest, blinker: None) -> Iterator[Body]:
 
 
 def answer(robot: Body, id: str) -> Event:
-    """Let the robot live until that command is answered."""
+    """Let the robot live until that command is answered, and return the answer."""
     events: list[Event] = []
 
     def live() -> bool:

@@ -43,7 +43,7 @@ def executor() -> Iterator[Executor]:
 
 
 def ends(executor: Executor, now: float = 0.0) -> list[Event]:
-    """Advance the executor, which stays at `now` [s], until something ends."""
+    """Advance the executor, which stays at `now` [s], until something ends; return the events."""
     events: list[Event] = []
     until(lambda: bool(events.extend(executor.advance(now)) or events))
     return events

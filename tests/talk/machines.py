@@ -45,7 +45,7 @@ def hearing(
     lists: Mapping[str, Any] | None = None,
     more: Mapping[str, Any] | None = None,
 ) -> Machine:
-    """A behaviour whose state `asked` has these rows; a text target is made a state, `caught` holds what was heard."""
+    """Return a behaviour whose state `asked` has these rows; text targets become states, `caught` gets `heard`."""
     rows = {key: _row(row) for key, row in hears.items()}
     targets = {one["target"] for row in rows.values() for one in (row if isinstance(row, list) else [row])} - {"."}
     return Machine.from_dict(
@@ -66,7 +66,7 @@ def _row(row: Any) -> dict[str, Any]:
 
 
 def said(machine: Machine, text: Any, snapshot: Snapshot | None = None) -> Step:
-    """The step of a sentence, from the beginning if nothing else is given."""
+    """Return the step of a sentence, from the beginning if nothing else is given."""
     return step(machine, snapshot or initial(machine).snapshot, Event("heard", {"result": text}))
 
 

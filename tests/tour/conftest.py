@@ -23,7 +23,7 @@ def copy(tmp_path: Path) -> Path:
 
 
 def copied(folder: Path) -> Path:
-    """The folder, with the shipped exhibition in it."""
+    """Copy the shipped exhibition into the folder, and return the folder."""
     shutil.copy(ROOT / MAIN_FILE, folder)
     for part in SHIPPED_FOLDERS:
         shutil.copytree(ROOT / part, folder / part)

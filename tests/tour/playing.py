@@ -20,23 +20,28 @@ from tests.tour.names import GUIDE
 
 @dataclass
 class Run:
-    """A record of a run: texts with times [s], motions finished, states entered, errors by name, log lines."""
+    """A record of a run."""
 
     failure: str = ""
+    """Why the story failed; empty if it passed."""
     time: float = 0.0
+    """The time of the end [s]."""
     said: list[tuple[float, str]] = field(default_factory=list)
+    """The texts spoken, each after its time [s]."""
     played: list[str] = field(default_factory=list)
+    """The names of the motions that finished."""
     entered: list[str] = field(default_factory=list)
     errors: list[str] = field(default_factory=list)
+    """The names of the events of errors."""
     logged: list[str] = field(default_factory=list)
 
     def guide(self) -> list[str]:
-        """The tour's states in the order entered."""
+        """Return the tour's states in the order in which they were entered."""
         return [name for name in self.entered if name in GUIDE]
 
 
 class Performer(Robot, Hall, Protocol):
-    """A robot in a world of ours; `advance` lets [s] pass."""
+    """A robot with its hall; `advance` lets that much time pass [s]."""
 
     def advance(self, dt: float) -> None: ...
 
@@ -75,7 +80,7 @@ def play(
     part: Callable[[float], None] | None = None,
     observers: Sequence[Observer] = (),
 ) -> Run:
-    """The story played to its end, or to its failure; `part` lives with it, `observers` watch it."""
+    """Play a story to its end, or to its failure; `part` lives with it, `observers` watch it."""
     run = Run()
     chosen = Setup(performer, SimulatedClock(performer.advance), performer) if performer else None
     rehearsal = rehearse(project, story, chosen, observers=[Log(run), *observers], hooks=[part] if part else [])

@@ -12,7 +12,7 @@ GLAD = "That is good to hear, {{ context.title_en }}."
 
 @pytest.fixture
 def changed(copy: Path):  # type: ignore[no-untyped-def]
-    """Plays the shipped story on a project in whose tour a line was replaced."""
+    """A function that plays the shipped story on a project in whose tour a line was replaced."""
     tour = copy / "behaviors" / "tour.yaml"
 
     def replay(old: str, new: str) -> Run:

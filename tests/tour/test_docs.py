@@ -87,7 +87,7 @@ def test_the_schemas_know_every_file_that_the_vocabulary_lists() -> None:
 
 
 def commands(text: str) -> Iterator[list[str]]:
-    """The commands between backticks or in indented lines."""
+    """Yield the commands between backticks or in indented lines."""
     for found in re.findall(r"`((?:lumen|make|pytest|python) [^`]+)`", text):
         yield found.split()
     for line in text.splitlines():
@@ -96,7 +96,7 @@ def commands(text: str) -> Iterator[list[str]]:
 
 
 def files_of(words: list[str]) -> list[str]:
-    """The files and folders that python or pytest is given."""
+    """Return the files and folders that python or pytest is given."""
     if words[:2] == ["-m", "pytest"]:
         words = words[2:]
     if words[0] == "-m":

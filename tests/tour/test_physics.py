@@ -1,4 +1,4 @@
-"""The tour on the simulated robot, at honest physics."""
+"""The tour on the simulated robot, with physics."""
 
 from collections.abc import Iterator
 from dataclasses import replace

@@ -54,7 +54,7 @@ def actions(state: State) -> Iterator[object]:
 
 
 def leaves(tour: MachineDefinition, around: str) -> Iterator[State]:
-    """The states that are active alone within another one; groups of states are not."""
+    """Yield the states that are active alone within another one; groups of states are not."""
     groups = {state.parent for state in tour.states.values()}
     for state in tour.states.values():
         if state.path.startswith(f"{around}.") and state.path not in groups and state.kind != StateKind.HISTORY:
@@ -143,7 +143,7 @@ def test_a_part_of_a_word_is_not_a_phrase(tour: MachineDefinition, text: str, na
 
 
 def test_every_state_of_a_conversation_ends_by_itself(tour: MachineDefinition) -> None:
-    """A long silence, a motion that never ends: in any case the next visitor can be greeted."""
+    """After a long silence, or a motion that never ends, the next visitor can still be greeted."""
     for state in leaves(tour, "guide.talking"):
         around = [s for s in tour.states.values() if f"{state.path}.".startswith(f"{s.path}.")]
         assert any(t.delay for s in around for t in s.transitions), state.name

@@ -48,7 +48,7 @@ def test_what_is_said_during_the_greeting_does_not_cut_it(project: Project) -> N
 
 
 def test_another_trouble_during_the_first_is_not_forgotten_by_the_guide(project: Project) -> None:
-    """A fall while the battery's call is on: the guide stays out of it until the robot stands."""
+    """The robot falls while the battery is low: the guide does nothing until the robot stands."""
     deeds: list[VisitorAction] = [
         Arrive(Visitor()),
         Expect(("ask_name",)),
@@ -63,7 +63,7 @@ def test_another_trouble_during_the_first_is_not_forgotten_by_the_guide(project:
 
 @pytest.mark.parametrize("state", ["stopped", "resting", "helpless"])
 def test_a_robot_with_its_motors_off_does_not_get_up_by_itself(project: Project, state: str) -> None:
-    """`fallen` there is noted, and nothing moves until a hand holds its head."""
+    """It notes `fallen`, and nothing moves until a hand holds its head."""
     begin: dict[str, VisitorAction] = {
         "stopped": Happen("stop"), "resting": Happen("head.held"), "helpless": Happen("fallen"),
     }  # fmt: skip

@@ -24,7 +24,7 @@ BASE = ROOT / "tests/lint/base"
 
 
 def polite(document: Document) -> Iterator[Rewriting]:
-    """A change that is more than a key: vocabulary 3 says `please` where 2 said `now`."""
+    """Yield a change that is more than a key: vocabulary 3 says `please` where 2 said `now`."""
     if document.file.startswith("motions/") and document.data.get("when") == "now":
         yield Rewriting(document.place(("when",)), "`when: now` is `when: please` now", "please")
 
@@ -137,7 +137,7 @@ def test_what_leads_to_the_vocabulary_of_this_lumen_is_known_from_every_older_on
 
 
 def test_a_file_without_the_number_is_of_the_first(monkeypatch: pytest.MonkeyPatch) -> None:
-    """As a Lumen of a later vocabulary finds it."""
+    """A Lumen of a later vocabulary reports it as an older file."""
     files = read_files(BASE)
     assert check_files(BASE, files)[1] == ()
     monkeypatch.setattr(settings, "VOCABULARY", 2)

@@ -29,7 +29,7 @@ def die(kit: UnpackedKit, number: int) -> None:
 
 
 def square_or_die(kit: UnpackedKit, number: int, marker: str) -> int:
-    """The worker that does the third task first is killed by it."""
+    """Return the square of the number; the worker that does the third task first is killed by it."""
     if number == 3:
         die_once(marker)
     return number**2

@@ -1,4 +1,4 @@
-"""Work on a cluster of Dask with three workers on loopback: one is killed, and the same comes of it."""
+"""Work on a cluster of Dask with three workers on loopback: one is killed, and the results are the same."""
 
 import importlib.util
 import socket

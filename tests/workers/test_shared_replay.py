@@ -1,4 +1,4 @@
-"""A journal that several workers replay: the report is that of one."""
+"""A journal that several workers replay: the report equals that of one."""
 
 from pathlib import Path
 
@@ -17,7 +17,7 @@ from tests.copying import copied_project
 
 @pytest.fixture(scope="module")
 def played(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A small exhibition in which several visitors were, one after the other."""
+    """A small exhibition after several visits, one after the other."""
     folder = copied_project(ROOT / "examples/minimal", tmp_path_factory.mktemp("played") / "minimal")
     (story,) = (folder / "behaviors" / "stories").glob("*.yaml")
     text = story.read_text("utf-8")

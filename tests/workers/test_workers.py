@@ -1,4 +1,4 @@
-"""Tasks for several processes: the same comes of them, a worker that dies is told, and nothing is left behind."""
+"""Tasks for several processes: the results are the same, a worker that dies is reported, and nothing is left behind."""
 
 import os
 import signal

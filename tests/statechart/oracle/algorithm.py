@@ -1,6 +1,6 @@
 """W3C SCXML 1.0, Appendix D ("Algorithm for SCXML Interpretation"), procedure by procedure, with its names.
 
-No set is kept from one question to the next. Ours is that states have `after`, whose timers begin with the entry and
+No set is kept from one question to the next. Lumen adds that states have `after`, whose timers begin with the entry and
 end with the exit; that the root is a state, with whose end the machine stops running; that what is done completes the
 parallel states around it all the way up, where the pseudo-code goes up once; that a region of a parallel state may be
 final; and that after `exitInterpreter` the configuration still holds the last states of the machine.
@@ -39,11 +39,11 @@ class Oracle(Sets):
         self.world.raised, self.world.commands, self.world.failed = [], [], []
 
     def happen(self, event: Event) -> None:
-        """A macrostep with an event from outside."""
+        """Perform a macrostep with an event from outside."""
         self.external(event, lambda t: t.delay is None and matches(t, event.name))
 
     def tick(self) -> None:
-        """A macrostep with the timer that ends next; of those that end together, the one set first."""
+        """Perform a macrostep with the timer that ends next; of those that end together, the one set first."""
         timer = min(self.world.timers, key=lambda t: t.due)
         self.world.timers = [t for t in self.world.timers if t is not timer]
         event = Event(timer.event, timer.data, timer.due, timer.id)

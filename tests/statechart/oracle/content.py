@@ -69,7 +69,7 @@ class World:
         self.raised.append(event)
 
     def fail(self, where: Where) -> None:
-        """`error.execution`; once for a place, while that very event is being handled."""
+        """Raise `error.execution`, once for a place while that very event is being handled."""
         if not (self.event and self.event.name == "error.execution" and where in self.failed):
             self.failed.append(where)
             self.enqueue(Event("error.execution", {"where": ".".join(map(str, where))}, self.at))
@@ -130,7 +130,7 @@ class World:
                 raise NotImplementedError(other)
 
     def put(self, way: list[str], value: Any) -> None:
-        """Set in a copy of all there is, a key within maps or the context's own."""
+        """Set a key of the context, or one within its maps, in a copy of the context."""
         world = deepcopy(self.context)
         place: Any = world
         for key in way[:-1]:
@@ -141,7 +141,7 @@ class World:
         self.store(way[0], world[way[0]])
 
     def store(self, key: str, value: Any) -> None:
-        """A key keeps the type of its first value, if that is not null."""
+        """Set a key of the context. Raises FaultError if its first value is of another type and not null."""
         first = self.machine.context[key]
         if first is not None and _type(first) != _type(value):
             raise FaultError(key)

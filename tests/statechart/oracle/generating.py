@@ -54,7 +54,7 @@ happenings: st.SearchStrategy[list[Event | None]] = st.lists(
 
 @st.composite
 def machine_data(draw: st.DrawFn, *, deeds: bool = False) -> Data:
-    """A random machine as a dict: four levels, any target; with `deeds` its states have a `do`."""
+    """Draw a random machine as a dict: four levels, any target; with `deeds` its states have a `do`."""
     return Making(draw, deeds).data()
 
 
@@ -83,7 +83,7 @@ class Making:
         return options[self.draw(st.integers(0, len(options) - 1))]
 
     def state(self, path: str, depth: int) -> Data:
-        """The tree of states; those without children may be final, and some children are histories."""
+        """Return the tree of states; those without children may be final, and some children are histories."""
         data: Data = {}
         self.states[path] = data
         if path and self.chance(30):
@@ -142,7 +142,7 @@ class Making:
             data["onError"] = self.transition()
 
     def answer(self, event: str) -> Data:
-        """Mostly a transition that can't bring itself about without end."""
+        """Return a transition, which mostly can't bring itself about without end."""
         inner = event == "*" or event.startswith(("done", "error"))
         return self.bounded() if inner and self.chance(95) else self.transition()
 
@@ -177,7 +177,7 @@ class Making:
         return f"#{path}"
 
     def beginning(self, home: str) -> Any:
-        """States below `home`, to begin in: one, or two of different regions."""
+        """Return states below `home` to begin in: one, or two of different regions."""
         below = [p for p in self.under(home) if self.states[p].get("type") != "history"]
         path = self.pick(below)
         together = [p for p in below if self.meet(path, p)]
@@ -199,7 +199,7 @@ class Making:
 
 
 def named(value: Any, state: str) -> Any:
-    """The action, with `S` in its expressions replaced by the name of a state."""
+    """Return the action, with `S` in its expressions replaced by the name of a state."""
     match value:
         case dict():
             return {key: named(item, state) for key, item in value.items()}

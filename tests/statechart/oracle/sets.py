@@ -1,6 +1,6 @@
 """Which states transitions leave and enter, and which transitions go together: the sets of Appendix D.
 
-Three times the pseudo-code, taken by its letter, leads to configurations that are none, and section 3.13 decides. Its
+Three times the pseudo-code, taken by its letter, leads to illegal configurations, and section 3.13 decides. Its
 entry set has no state that is active and not left: `add_ancestors` ends at a state that stays, which it could pass on
 the way up from what a history remembers. Its complete target set begins a compound state by default only if none
 of its children is in the set: a target around another target enters nothing by itself. And a transition has one domain:

@@ -19,7 +19,7 @@ BUSY = settings(deadline=None, database=None, suppress_health_check=[HealthCheck
 
 
 def compare(machine: MachineDefinition, events: list[Happening | None], tally: Counter[str]) -> None:
-    """Run both side by side; AssertionError at the first step in which they differ."""
+    """Run both side by side; raise AssertionError at the first step in which they differ."""
     tally["machines"] += 1
     oracle, snapshot = None, None
     for happening in [None, *events]:
@@ -62,7 +62,7 @@ def due_in(oracle: Oracle | None) -> bool:
 
 
 def by_the_book(machine: MachineDefinition, oracle: Oracle | None, event: Event | None) -> Oracle | None:
-    """The oracle after the event, or after its own next timer."""
+    """Return the oracle after the event, or after its own next timer."""
     try:
         if oracle is None:
             return Oracle(machine)

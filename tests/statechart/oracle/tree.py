@@ -20,7 +20,7 @@ class Tree:
         return SCXML if state.parent is None else self.machine.states[state.parent]
 
     def children(self, state: State) -> list[State]:
-        """`getChildStates`: neither histories nor anything else that is no real state."""
+        """`getChildStates`: histories are left out."""
         below = [s for s in self.machine.states.values() if self.parent(s) is state]
         return [s for s in below if s.kind is not StateKind.HISTORY]
 
@@ -28,11 +28,11 @@ class Tree:
         return [s for s in self.machine.states.values() if self.parent(s) is state and s.kind is StateKind.HISTORY]
 
     def initial(self, state: State) -> list[State]:
-        """The targets of the transition in `<initial>`, or in a history state."""
+        """Return the targets of the transition in `<initial>`, or in a history state."""
         return [self.machine.states[path] for path in state.initial]
 
     def proper_ancestors(self, state: State, top: State | None) -> list[State]:
-        """`getProperAncestors`: none where `top` is not above the state."""
+        """`getProperAncestors`: none if `top` is not above the state."""
         found: list[State] = []
         above = self.parent(state)
         while above is not None and above is not top:

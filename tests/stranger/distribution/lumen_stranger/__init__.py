@@ -1,1 +1,1 @@
-"""What a stranger adds to Lumen; it knows only what Lumen's documentation promises."""
+"""The additions of a stranger to Lumen, who knows only what Lumen's documentation promises."""
