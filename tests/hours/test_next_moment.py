@@ -28,8 +28,8 @@ WATCHED = timedelta(days=9)
 def watched(wanted: Schedule, after: datetime, zone: ZoneInfo) -> datetime | None:
     """Return the first minute later than `after` in which the clock shows a time of the schedule for the first time.
 
-    Without such a minute within `WATCHED`, None is returned. The search begins two days earlier, and notes each time that was
-    shown or skipped.
+    Without such a minute within `WATCHED`, None is returned. The search begins two days earlier, and notes each time
+    that was shown or skipped.
     """
     minute = after.replace(second=0, microsecond=0) - timedelta(days=2)
     furthest = minute.astimezone(zone).replace(tzinfo=None)

@@ -23,7 +23,7 @@ class Misnamed(NamedTuple):
 
 def misnamed_in(root: Path, folder: str) -> Iterator[Misnamed]:
     """Yield files of a project folder with a mistyped ending, such as `.yml`, and folders with capital letters."""
-    endings, listed = endings_in(folder), _listed(root, folder)
+    endings, listed = endings_in(folder), listed_in(root, folder)
     for name in listed:
         path = f"{folder}/{name}" if folder else name
         lowered = path.lower()
