@@ -1,5 +1,6 @@
-"""The sources of the console's pages: lines that fit beside each other, and one layout of code and CSS."""
+"""The sources of the console's pages: short lines, one layout of code and CSS, and the rules of ESLint."""
 
+import json
 import re
 from collections.abc import Iterator
 from pathlib import Path
@@ -38,3 +39,15 @@ def test_code_and_css_have_the_layout_of_prettier() -> None:
     line = ["node", str(prettier), "--config", ".prettierrc.yaml", "--list-different", *files]
     done = run_guarded(line, cwd=ROOT, capture_output=True, text=True)
     assert (done.stdout, done.stderr) == ("", "")
+
+
+def test_code_keeps_the_rules_of_eslint() -> None:
+    """The types are checked in test_page_types.py."""
+    eslint = fetched("eslint") / "node_modules/eslint/bin/eslint.js"
+    line = ["node", str(eslint), "--max-warnings", "0", "--format", "json", str(PAGES)]
+    done = run_guarded(line, cwd=ROOT, capture_output=True, text=True)
+    assert done.stderr == ""
+    files = json.loads(done.stdout)
+    found = [f"{file['filePath']}:{one['line']}: {one['message']}" for file in files for one in file["messages"]]
+    assert found == []
+    assert {file["filePath"] for file in files} == {str(file) for file in sources(".js")}

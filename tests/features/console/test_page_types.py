@@ -60,7 +60,6 @@ def test_the_types_describe_what_the_server_sends(hosted: Hosted, browser: Brows
 
 
 def test_a_wrong_key_is_found(tmp_path: Path) -> None:
-    imported = json.dumps(str(PAGES / "live.js"))
-    code = f'import {{ robotOf }} from {imported};\nexport const name = robotOf("NAO")?.nmae;\n'
-    (found,) = faults_of(code, tmp_path)
+    known = f"import {{ robotOf }} from {json.dumps(str(PAGES / 'live.js'))};\n"
+    (found,) = faults_of(f'{known}export const name = robotOf("NAO")?.nmae;\n', tmp_path)
     assert "Property 'nmae' does not exist on type 'Robot'" in found

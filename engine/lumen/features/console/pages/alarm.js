@@ -22,9 +22,11 @@ function sound() {
   TONES.forEach((pitch, n) => {
     const tone = player.createOscillator(),
       volume = player.createGain();
-    ((tone.frequency.value = pitch), (volume.gain.value = 0.2));
+    tone.frequency.value = pitch;
+    volume.gain.value = 0.2;
     tone.connect(volume).connect(player.destination);
-    (tone.start(n * TONE), tone.stop((n + 1) * TONE));
+    tone.start(n * TONE);
+    tone.stop((n + 1) * TONE);
     if (n === TONES.length - 1) tone.onended = () => player.close();
   });
 }

@@ -47,8 +47,8 @@ const SIGNS = { sending: "…", sent: "→", finished: "✓", failed: "✕", uns
 /** @param {Told} one */
 function sentence({ label, state, answer }) {
   const waits = state === "finished" && answer.answer?.waiting;
-  const told = `${label}: ${t(waits ? "told.waits" : `told.${state}`, { seconds: fixed(answer.seconds ?? 0, 1) })}`;
-  return answer.reason && state !== "finished" ? html`${told}: <${Quote} text=${answer.reason} />` : told;
+  const text = `${label}: ${t(waits ? "told.waits" : `told.${state}`, { seconds: fixed(answer.seconds ?? 0, 1) })}`;
+  return answer.reason && state !== "finished" ? html`${text}: <${Quote} text=${answer.reason} />` : text;
 }
 
 export function Told() {

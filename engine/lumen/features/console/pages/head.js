@@ -12,7 +12,7 @@ import {
   Since,
   byId,
   html,
-  isTicked,
+  ticked,
   keep,
   kept,
   language,
@@ -23,7 +23,7 @@ import {
   useRedraw,
   useRef,
   useState,
-  valueOf,
+  typed,
 } from "./ui.js";
 
 const PAGES = ["", "day", "files", "see"];
@@ -98,7 +98,7 @@ function Theme() {
     keep("lumen.theme", theme === "auto" ? null : theme);
     redraw();
   };
-  return html`<label>${t("theme")}<select value=${now} onChange=${(/** @type {Event} */ e) => set(valueOf(e))}>
+  return html`<label>${t("theme")}<select value=${now} onChange=${typed(set)}>
     ${["auto", "light", "dark"].map(
       (theme) => html`<option value=${theme}
       selected=${theme === now}>${t(`theme.${theme}`)}</option>`,
@@ -114,7 +114,7 @@ function Sound() {
     redraw();
   };
   return html`<label class="check">
-    <input type="checkbox" checked=${on} onChange=${(/** @type {Event} */ e) => set(isTicked(e))} /> ${t("sound")}</label>`;
+    <input type="checkbox" checked=${on} onChange=${ticked(set)} /> ${t("sound")}</label>`;
 }
 
 function Settings() {
@@ -122,14 +122,14 @@ function Settings() {
     button = useRef(/** @type {HTMLButtonElement | null} */ (null));
   useEffect(() => {
     if (!open) return undefined;
-    const typed = (/** @type {KeyboardEvent} */ event) => {
+    const pressed = (/** @type {KeyboardEvent} */ event) => {
       if (event.key === "Escape" && !event.repeat) {
         set(false);
         button.current?.focus();
       }
     };
-    addEventListener("keydown", typed);
-    return () => removeEventListener("keydown", typed);
+    addEventListener("keydown", pressed);
+    return () => removeEventListener("keydown", pressed);
   }, [open]);
   const modes = ROLES.slice(1, ROLES.indexOf(live.role ?? "nobody") + 1);
   return html`<div class="settings"><button type="button" class="plain" ref=${button} aria-expanded=${open}
@@ -138,13 +138,13 @@ function Settings() {
     <div id="settings" hidden=${!open} class="sheet">
       ${
         modes.length > 1 &&
-        html`<label>${t("mode")}<select value=${mode()} onChange=${(/** @type {Event} */ e) => show(valueOf(e))}>
+        html`<label>${t("mode")}<select value=${mode()} onChange=${typed(show)}>
         ${modes.map(
           (one) => html`<option value=${one}
           selected=${one === mode()}>${t(`mode.${one}`)}</option>`,
         )}</select></label>`
       }
-      <label>${t("language")}<select value=${language()} onChange=${(/** @type {Event} */ e) => speak(valueOf(e))}>
+      <label>${t("language")}<select value=${language()} onChange=${typed(speak)}>
         ${Object.entries(LANGUAGES).map(
           ([code, name]) => html`<option value=${code} lang=${code}
           selected=${code === language()}>${name}</option>`,

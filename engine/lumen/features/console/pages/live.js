@@ -24,7 +24,8 @@ export const live = {
   told: /** @type {Entry[]} */ ([]),
   commands: /** @type {CommandSent[]} */ ([]),
   skew: 0,
-  alarms: /** @type {Map<string, Entry>} */ (new Map()), // the last entry of each alarm of each robot: busy ones don't push it out
+  // The last entry of each alarm of each robot: busy ones don't push it out.
+  alarms: /** @type {Map<string, Entry>} */ (new Map()),
 };
 /** Events of a robot's body that people have to see. */
 export const ALARMS = ["fallen", "motors.hot", "battery.low"];
@@ -109,20 +110,26 @@ export async function connect() {
   try {
     /** @type {Now} */
     const now = await get("/api/now", {}, ANSWER);
+    if (mine !== stream) return; // asked before a later `connect`, as another person perhaps
     live.role = now.role ?? "author";
     live.fleet = now.fleet ?? false;
     live.skew = Date.parse(now.time) - Date.now();
     live.robots.clear();
     now.robots.forEach(took);
-    if (live.role === "nobody" && lumen.page !== "subtitles") return (become("live"), again(mine, 2000));
+    if (live.role === "nobody" && lumen.page !== "subtitles") {
+      become("live");
+      again(mine, 2000);
+      return;
+    }
     await read(mine, now.robots);
   } catch (error) {
     const { status } = /** @type {{ status?: number }} */ (error);
     if (mine.signal.aborted) return;
     if (status === 401 || status === 403) {
-      live.role = "nobody";
+      Object.assign(live, { role: "nobody" });
       become("live");
-      return again(mine, 2000);
+      again(mine, 2000);
+      return;
     }
   }
   again(mine, AGAIN);
@@ -130,12 +137,12 @@ export async function connect() {
 
 /**
  * @param {AbortController} mine
- * @param {number} after
+ * @param {number} pause
  */
-function again(mine, after) {
+function again(mine, pause) {
   if (mine !== stream) return;
   if (live.role !== "nobody") become("away");
-  timer = setTimeout(connect, after);
+  timer = setTimeout(connect, pause);
 }
 
 /**

@@ -80,7 +80,8 @@
    */
   function remember(press) {
     try {
-      press ? sessionStorage.setItem(PRESSED, JSON.stringify(press)) : sessionStorage.removeItem(PRESSED);
+      if (press) sessionStorage.setItem(PRESSED, JSON.stringify(press));
+      else sessionStorage.removeItem(PRESSED);
     } catch {
       /* a private window */
     }
@@ -163,9 +164,9 @@
       this.whom.setAttribute("aria-hidden", "true"); // a description says it: the button's name is Rest
       this.button.append(this.label, this.whom);
       this.button.addEventListener("click", () => this.press());
-      (this.calm.setAttribute("role", "status"),
-        this.alarm.setAttribute("role", "alert"),
-        this.sign.setAttribute("aria-hidden", "true"));
+      this.calm.setAttribute("role", "status");
+      this.alarm.setAttribute("role", "alert");
+      this.sign.setAttribute("aria-hidden", "true");
       this.close.addEventListener("click", () => {
         this.said.hidden = true;
         this.forget(this.sent);
@@ -184,7 +185,8 @@
     speak() {
       // in the page's language
       if (!this.button.parentElement) return;
-      ((this.label.textContent = words().rest), (this.close.textContent = words().dismiss));
+      this.label.textContent = words().rest ?? "";
+      this.close.textContent = words().dismiss ?? "";
       const whom = this.getAttribute("robot") ?? robot;
       this.whom.textContent = whom === "*" ? words().all : whom;
       this.button.setAttribute("aria-description", this.whom.textContent);
@@ -196,11 +198,15 @@
       const press = ++this.presses;
       /** @type {Press} */
       const sent = again ?? { id: newId(), robot: this.getAttribute("robot") ?? robot, at: Date.now() };
-      ((this.sent = sent), (this.rested = false));
+      this.sent = sent;
+      this.rested = false;
       remember(sent);
       post({ id: sent.id, robot: sent.robot, command: "rest" }, (state, answer) => {
         sent.told = [state, answer];
-        if (answer.status) ((sent.answered = true), setTimeout(() => this.forget(sent), SEEN));
+        if (answer.status) {
+          sent.answered = true;
+          setTimeout(() => this.forget(sent), SEEN);
+        }
         if (remembered()?.id === sent.id) remember(sent);
         if (press === this.presses || (state === "finished" && !again)) this.show(state, answer);
       });
@@ -210,7 +216,9 @@
     recall(sent) {
       // an older press, not sent again: what the page before reported, if that was more than its being sent
       const [state = "unknown", answer] = sent.told ?? [];
-      ((this.sent = sent), (this.rested = false), (sent.answered = true));
+      this.sent = sent;
+      this.rested = false;
+      sent.answered = true;
       this.show([...ALARMS, ...RESTS].includes(state) ? state : "unknown", answer);
       setTimeout(() => this.forget(sent), SEEN);
     }
@@ -265,7 +273,9 @@
       const reason = globalThis.lumen.inPageLanguage?.(answer.reason ?? "") ?? answer.reason ?? "";
       const text = (words()[state] ?? state).replace("{seconds}", seconds).replace("{reason}", () => reason);
       const alarming = ALARMS.includes(state);
-      ((this.said.hidden = false), (this.said.dataset.state = state), (this.sign.textContent = SIGNS[state] ?? ""));
+      this.said.hidden = false;
+      this.said.dataset.state = state;
+      this.sign.textContent = SIGNS[state] ?? "";
       this.calm.textContent = alarming ? "" : text;
       this.alarm.textContent = alarming ? text + (state === "unsent" && reason ? ` (${reason})` : "") : "";
       if (alarming) setTimeout(() => this.heed(), NEW); // the robots may report nothing new meanwhile

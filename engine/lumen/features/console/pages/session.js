@@ -3,7 +3,7 @@
 /** @import { Role } from "./types" */
 import { connect, live } from "./live.js";
 import { Quote, reasonOf } from "./quoted.js";
-import { Dialog, html, keep, kept, redraw, t, useRedraw, useState, valueOf } from "./ui.js";
+import { Dialog, html, keep, kept, redraw, t, useRedraw, useState, typed } from "./ui.js";
 
 /** @type {Role[]} */
 export const ROLES = ["nobody", "show", "operator", "author"];
@@ -59,9 +59,10 @@ export function SignIn() {
         signal: AbortSignal.timeout(20000),
       });
       const said = await answer.json().catch(() => ({}));
-      if (!answer.ok) return setWrong(said.reason ?? said.detail ?? `${answer.status}`);
-      close();
-      connect();
+      if (answer.ok) {
+        close();
+        connect();
+      } else setWrong(said.reason ?? said.detail ?? `${answer.status}`);
     } catch (error) {
       setWrong(reasonOf(error));
     }
@@ -70,8 +71,8 @@ export function SignIn() {
     class="strong">${t("sign.in")}</button>`}>
     <form id="pin" class="fields" onSubmit=${enter}>
       <label>${t("pin")}<input type="password" inputmode="numeric" autocomplete="current-password" required autofocus
-        aria-describedby="pin-wrong" value=${pin} onInput=${(/** @type {Event} */ e) => setPin(valueOf(e))} /></label>
+        aria-describedby="pin-wrong" value=${pin} onInput=${typed(setPin)} /></label>
       <label>${t("your.name")}<input autocomplete="name" maxlength="60" value=${name}
-        onInput=${(/** @type {Event} */ e) => setName(valueOf(e))} /></label>
+        onInput=${typed(setName)} /></label>
       <p id="pin-wrong" class="bad" role="alert"><${Quote} text=${wrong} /></p></form></${Dialog}>`;
 }

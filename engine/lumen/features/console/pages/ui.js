@@ -4,12 +4,12 @@
 /** @import { Texts, Entry } from "./types" */
 import { html, render, useEffect, useLayoutEffect, useRef, useState } from "./vendor/htm-preact.js";
 import en from "./texts/en.js";
-import id from "./texts/id.js";
+import indonesian from "./texts/id.js";
 
 export { html, render, useEffect, useLayoutEffect, useRef, useState };
 
 /** @type {Record<string, Record<string, string>>} */
-const TEXTS = { en, id };
+const TEXTS = { en, id: indonesian };
 /** @type {Set<(value: {}) => void>} */
 const redraws = new Set();
 
@@ -50,7 +50,8 @@ export const lineOf = (entry) => entry.texts?.[language()] ?? entry.text;
  */
 export function keep(key, value) {
   try {
-    value === null ? localStorage.removeItem(key) : localStorage.setItem(key, value);
+    if (value === null) localStorage.removeItem(key);
+    else localStorage.setItem(key, value);
   } catch {
     /* a private window */
   }
@@ -168,16 +169,22 @@ let ids = 0;
 export const useId = () => useRef(`e${++ids}`).current;
 
 /**
- * The text of the field in which something was typed or chosen.
- * @param {Event} event
+ * A handler for a field: `use` gets the text that was typed or chosen.
+ * @param {(text: string) => void} use
  */
-export const valueOf = ({ target }) => /** @type {HTMLInputElement | HTMLSelectElement} */ (target).value;
+export const typed =
+  (use) =>
+  (/** @type {Event} */ { target }) =>
+    use(/** @type {HTMLInputElement | HTMLSelectElement} */ (target).value);
 
 /**
- * Whether the box that was clicked is ticked now.
- * @param {Event} event
+ * A handler for a box: `use` gets whether it is ticked now.
+ * @param {(on: boolean) => void} use
  */
-export const isTicked = ({ target }) => /** @type {HTMLInputElement} */ (target).checked;
+export const ticked =
+  (use) =>
+  (/** @type {Event} */ { target }) =>
+    use(/** @type {HTMLInputElement} */ (target).checked);
 
 /**
  * A part of the page with a heading of its own.
@@ -212,11 +219,11 @@ export function Dialog({ title, onClose, children, actions = null }) {
     };
   }, []);
   useEffect(() => {
-    const typed = (/** @type {KeyboardEvent} */ event) => {
+    const pressed = (/** @type {KeyboardEvent} */ event) => {
       if (event.key === "Escape" && !event.repeat) onClose();
     };
-    addEventListener("keydown", typed);
-    return () => removeEventListener("keydown", typed);
+    addEventListener("keydown", pressed);
+    return () => removeEventListener("keydown", pressed);
   });
   return html`<div class="scrim" onClick=${onClose}></div>
     <dialog open ref=${box} tabindex="-1" aria-labelledby=${heading}><h2 id=${heading}>${title}</h2>${children}

@@ -4,7 +4,7 @@
 import { JOB, get } from "../live.js";
 import { Entry } from "../now/entries.js";
 import { Quote, reasonOf } from "../quoted.js";
-import { Part, html, t, useState, valueOf } from "../ui.js";
+import { Part, html, t, useState, typed } from "../ui.js";
 
 const TIME = /^\s*([01]?\d|2[0-3])[:.]([0-5]\d)(?:[:.]([0-5]\d))?\s*$/;
 
@@ -30,7 +30,7 @@ function GoTo({ date, scrub }) {
   };
   return html`<form class="go-to" onSubmit=${go}>
     <label><span>${t("find.time")}</span><input value=${text} placeholder="14:03" size="8" maxlength="8"
-      autocomplete="off" onInput=${(/** @type {Event} */ e) => write(valueOf(e))} /></label>
+      autocomplete="off" onInput=${typed(write)} /></label>
     <button>${t("find.time.go")}</button><p class="bad" role="alert">${wrong}</p></form>`;
 }
 
@@ -42,18 +42,21 @@ function Search({ name, first, last, open }) {
   const search = async (/** @type {SubmitEvent} */ submitted) => {
     submitted.preventDefault();
     complain("");
-    if (!text.trim()) return show(null);
+    if (!text.trim()) {
+      show(null);
+      return;
+    }
     try {
       show(await get("/api/search", { robot: name, from: first, to: last, text }, JOB));
     } catch (error) {
       complain(reasonOf(error));
     }
   };
-  const told = (/** @type {Entries} */ found) =>
-    found.more ? t("find.more", { n: found.entries.length }) : t("find.count", { n: found.entries.length });
+  const told = (/** @type {Entries} */ { entries, more }) =>
+    t(more ? "find.more" : "find.count", { n: entries.length });
   return html`<form class="search" role="search" onSubmit=${search}>
       <label class="grow"><span>${t("find.text")}</span><input type="search" value=${text} maxlength="200"
-        autocomplete="off" onInput=${(/** @type {Event} */ e) => write(valueOf(e))} /></label>
+        autocomplete="off" onInput=${typed(write)} /></label>
       <button>${t("find.text.go")}</button></form>
     <p role="status">${found ? told(found) : ""}</p><p class="bad" role="alert"><${Quote} text=${wrong} /></p>
     ${

@@ -3,7 +3,7 @@
 /** @import { Data, Entry, Forked } from "../types" */
 /** @import { Filled } from "./instead.js" */
 import { Quote, reasonOf } from "../quoted.js";
-import { Part, clock, html, isTicked, lineOf, t, useEffect, useRef, useState } from "../ui.js";
+import { Part, clock, html, ticked, lineOf, t, useEffect, useRef, useState } from "../ui.js";
 import { Instead, blank, eventOf } from "./instead.js";
 
 /**
@@ -63,10 +63,13 @@ export function Fork({ name, entry, asked = false }) {
     const words = box.current?.querySelector("input.words");
     if (speech) words?.select();
   }, []);
+  const write = (/** @type {Partial<Filled>} */ changes) => set((now) => ({ ...now, ...changes }));
   const go = async (/** @type {SubmitEvent} */ submitted) => {
     submitted.preventDefault();
     if (!entry) return;
-    (tell(""), wait(true), show(null));
+    tell("");
+    wait(true);
+    show(null);
     const body = { robot: name, position: entry.position, event: eventOf(form), bundle: saved ? "saved" : null };
     try {
       show({ ...(await ask(body)), from: entry });
@@ -82,8 +85,8 @@ export function Fork({ name, entry, asked = false }) {
       entry &&
       html`<form class="cue" ref=${box} onSubmit=${go}>
       <p class="grow"><b>${clock(entry.at_time)}</b> ${lineOf(entry)}</p>
-      <${Instead} name=${name} form=${form} write=${(/** @type {Partial<Filled>} */ changes) => set((now) => ({ ...now, ...changes }))} />
-      <label class="check"><input type="checkbox" checked=${saved} onChange=${(/** @type {Event} */ e) => setSaved(isTicked(e))} />
+      <${Instead} name=${name} form=${form} write=${write} />
+      <label class="check"><input type="checkbox" checked=${saved} onChange=${ticked(setSaved)} />
         ${" "}${t("fork.files")}</label>
       <button class="strong" disabled=${busy}>${t("fork.go")}</button></form>`
     }

@@ -1,7 +1,7 @@
 // @ts-check
 // What happens instead, for a fork: nothing else, other words of the visitor, or an event with its values.
 import { robotOf } from "../live.js";
-import { html, languageName, t, valueOf } from "../ui.js";
+import { html, languageName, t, typed } from "../ui.js";
 
 /**
  * What is filled in: `kind` is `same`, `says` or `event`; the others belong to `says` or `event`.
@@ -28,7 +28,7 @@ export const blank = (says = null, language = "") => ({
  * A value as it is typed: a number, true or false, else a text.
  * @param {string} text
  */
-function typed(text) {
+function valueIn(text) {
   const trimmed = text.trim();
   if (/^-?\d+(\.\d+)?$/.test(trimmed)) return Number(trimmed);
   return trimmed === "true" || (trimmed === "false" ? false : trimmed);
@@ -41,7 +41,7 @@ function typed(text) {
 export function eventOf({ kind, words, language, event, values }) {
   if (kind === "says") return { name: "heard", data: { result: words.trim(), ...(language ? { language } : {}) } };
   if (kind === "same" || !event.trim()) return null;
-  const named = values.filter((one) => one.name.trim()).map((one) => [one.name.trim(), typed(one.value)]);
+  const named = values.filter((one) => one.name.trim()).map((one) => [one.name.trim(), valueIn(one.value)]);
   return { name: event.trim(), data: Object.fromEntries(named) };
 }
 
@@ -50,11 +50,11 @@ function Words({ languages, form, write }) {
   const spoken = form.language || languages[0];
   return html`<label class="grow"><span>${t("fork.words")}</span>
       <input class="words" value=${form.words} maxlength="500" required autocomplete="off" lang=${spoken}
-        onInput=${(/** @type {Event} */ e) => write({ words: valueOf(e), language: spoken })} /></label>
+        onInput=${typed((text) => write({ words: text, language: spoken }))} /></label>
     ${
       languages.length > 1 &&
       html`<label><span>${t("language")}</span>
-      <select value=${spoken} onChange=${(/** @type {Event} */ e) => write({ language: valueOf(e) })}>${languages.map(
+      <select value=${spoken} onChange=${typed((text) => write({ language: text }))}>${languages.map(
         (one) => html`
         <option value=${one} selected=${one === spoken}>${languageName(one)}</option>`,
       )}</select></label>`
@@ -68,9 +68,9 @@ function Values({ values, write }) {
   return html`<ul class="plain-list event-values">${values.map(
     (one, n) => html`<li key=${n}>
       <label><span>${t("fork.value.name")}</span><input class="value-name" value=${one.name} autocomplete="off"
-        spellcheck=${false} onInput=${(/** @type {Event} */ e) => change(n, { name: valueOf(e) })} /></label>
+        spellcheck=${false} onInput=${typed((text) => change(n, { name: text }))} /></label>
       <label><span>${t("fork.value")}</span><input class="value" value=${one.value} autocomplete="off"
-        onInput=${(/** @type {Event} */ e) => change(n, { value: valueOf(e) })} /></label></li>`,
+        onInput=${typed((text) => change(n, { value: text }))} /></label></li>`,
   )}</ul>
     <button type="button" onClick=${() => write({ values: [...values, { name: "", value: "" }] })}>
       ${t("fork.value.add")}</button>`;
@@ -79,7 +79,7 @@ function Values({ values, write }) {
 /** @param {{ events: string[], form: Filled, write: Write }} props */
 function Other({ events, form, write }) {
   return html`<label class="grow"><span>${t("fork.name")}</span><input list="fork-events" value=${form.event} required
-      autocomplete="off" spellcheck=${false} onInput=${(/** @type {Event} */ e) => write({ event: valueOf(e) })} /></label>
+      autocomplete="off" spellcheck=${false} onInput=${typed((text) => write({ event: text }))} /></label>
     <datalist id="fork-events">${events.map((one) => html`<option value=${one} />`)}</datalist>
     <${Values} values=${form.values} write=${write} />`;
 }
@@ -92,7 +92,7 @@ export function Instead({ name, form, write }) {
   const robot = robotOf(name),
     languages = robot?.languages?.length ? robot.languages : [robot?.language ?? "en"];
   return html`<label><span>${t("fork.instead")}</span>
-      <select class="instead" value=${form.kind} onChange=${(/** @type {Event} */ e) => write({ kind: valueOf(e) })}>
+      <select class="instead" value=${form.kind} onChange=${typed((text) => write({ kind: text }))}>
         ${["same", "says", "event"].map(
           (one) => html`
           <option value=${one} selected=${one === form.kind}>${t(`fork.${one}`)}</option>`,

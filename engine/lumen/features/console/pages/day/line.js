@@ -1,7 +1,7 @@
 // @ts-check
 // The day from left to right: hours, visits, marks, and the moment that is looked at.
-import { clock, html, span, t } from "../ui.js";
-import { ZoomButtons, ticks, useZoom } from "./zoom.js";
+/** @import { Day, Stretch } from "../types" */
+import { clock, html, span, t, typed } from "../ui.js";
 
 const HOUR = 3600e3,
   STEP = 1000,
@@ -82,9 +82,7 @@ export function Line({ day, bounds, visit, moment, scrub, look }) {
     <label><span class="hidden">${t("day.scrub")}</span><input type="range" min=${begin} max=${end} step=${STEP}
       value=${moment}
       aria-valuetext="${clock(iso(moment))}${visit ? `, ${around(visit)}` : ""}"
-      onKeyDown=${(e) => view.typed(e, scrub, STEP)}
-      onInput=${(e) => scrub(Number(e.target.value))} /></label>
-    <${ZoomButtons} view=${view} bounds=${bounds} />
+      onInput=${typed((text) => scrub(Number(text)))} /></label>
     ${
       day.marks?.length > 0 &&
       html`<ul class="marks">${day.marks.map(

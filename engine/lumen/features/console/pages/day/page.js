@@ -19,7 +19,7 @@ import {
   useRedraw,
   useRef,
   useState,
-  valueOf,
+  typed,
 } from "../ui.js";
 import { Find } from "./find.js";
 import { Fork, speechOf } from "./fork.js";
@@ -149,7 +149,8 @@ export default function DayPage({ name }) {
     get("/api/day", { robot: name, date }, JOB).then(
       (/** @type {Day} */ found) => {
         if (gone) return;
-        (set(found), mark(null));
+        set(found);
+        mark(null);
         const last = found.visits.at(-1) ?? stretches(found).at(-1);
         if (last) look(last);
         else choose(null);
@@ -167,7 +168,7 @@ export default function DayPage({ name }) {
     let timer = 0,
       looked = 0,
       gone = false;
-    const look = () =>
+    const again = () =>
       get("/api/day", { robot: name }, JOB).then(
         (/** @type {Day} */ found) => {
           looked = Date.now();
@@ -181,7 +182,7 @@ export default function DayPage({ name }) {
           // What comes before the page is live was before.
           if (kind !== "entry" || body.robot !== name || !body.text || live.state !== "live") return;
           clearTimeout(timer);
-          timer = setTimeout(look, Math.max(SOON, looked + AGAIN - Date.now()));
+          timer = setTimeout(again, Math.max(SOON, looked + AGAIN - Date.now()));
         });
     return () => {
       gone = true;
@@ -189,8 +190,9 @@ export default function DayPage({ name }) {
       leave();
     };
   }, [date]);
-  /** Look at a moment; with `minute`, at the visit that begins within a minute of it, if none goes on then. */
-  const scrub = (at, minute = false) => {
+  const scrub = (/** @type {number} */ at) => {
+    move(at);
+    mark(null);
     const inside = parts.filter((one) => Date.parse(one.began) <= at).at(-1) ?? parts[0];
     const visited = inside?.n && !(Date.parse(inside.ended) < at);
     const begins = (one) => one.n && Date.parse(one.began) > at && Date.parse(one.began) < at + MINUTE;
@@ -203,7 +205,8 @@ export default function DayPage({ name }) {
   const parts = day ? stretches(day) : [];
   const open = (/** @type {Written} */ entry) => {
     choose(parts.filter((one) => one.from <= entry.position).at(-1) ?? parts[0]);
-    (mark(entry), move(Date.parse(entry.at_time)));
+    mark(entry);
+    move(Date.parse(entry.at_time));
   };
   const shown = parts.find((one) => one.from === visit?.from) ?? visit; // as it is by now
   if (failed)
@@ -211,7 +214,7 @@ export default function DayPage({ name }) {
   if (!day) return html`<p class="notice">${t("loading")}</p>`;
   return html`<div class="page-head"><h1>${t("page.day")}</h1>
       <label><span>${t("day.date")}</span><select class="date" value=${day.date}
-        onChange=${(/** @type {Event} */ e) => pick(valueOf(e))}>
+        onChange=${typed(pick)}>
         ${[...new Set([...(day.dates ?? []), day.date])].sort().map(
           (one) => html`
           <option value=${one} selected=${one === day.date}>${one}</option>`,

@@ -3,7 +3,7 @@
 /** @import { Heard } from "../types" */
 import { Quote, reasonOf } from "../quoted.js";
 import { may } from "../session.js";
-import { fixed, html, languageName, t, useEffect, useRef, useState, valueOf } from "../ui.js";
+import { fixed, html, languageName, t, useEffect, useRef, useState, typed } from "../ui.js";
 
 /**
  * The rows that could have taken a sentence, as the values of a choice.
@@ -30,7 +30,8 @@ function Row({ name, one, rows, saved }) {
   useEffect(() => field.current?.focus(), [open]);
   const save = async (/** @type {SubmitEvent} */ submitted) => {
     submitted.preventDefault();
-    (wait(true), complain(""));
+    wait(true);
+    complain("");
     try {
       const body = JSON.stringify({ robot: name, ...could[Number(chosen)], language: one.language, text });
       const sent = await fetch("/api/sayings", {
@@ -40,7 +41,10 @@ function Row({ name, one, rows, saved }) {
         signal: AbortSignal.timeout(60000),
       });
       const said = await sent.json().catch(() => ({}));
-      if (sent.ok) return saved(said.file);
+      if (sent.ok) {
+        saved(said.file);
+        return;
+      }
       complain(said.reason ?? `${sent.status}`);
     } catch (error) {
       complain(reasonOf(error));
@@ -57,14 +61,14 @@ function Row({ name, one, rows, saved }) {
     ${
       open &&
       html`<form class="cue" onSubmit=${save}><label><span>${t("day.said.row")}</span>
-        <select ref=${field} value=${chosen} onChange=${(/** @type {Event} */ e) => choose(valueOf(e))} required><option value="">
+        <select ref=${field} value=${chosen} onChange=${typed(choose)} required><option value="">
         </option>
       ${could.map(
         ({ state, row }, n) => html`<option value=${n}
         selected=${`${n}` === chosen}>${several ? `${row} (${state})` : row}</option>`,
       )}</select></label>
       <label class="grow"><span>${t("day.said.text")} (${languageName(one.language)})</span>
-        <input value=${text} onInput=${(/** @type {Event} */ e) => setText(valueOf(e))} maxlength="1000" required autocomplete="off" />
+        <input value=${text} onInput=${typed(setText)} maxlength="1000" required autocomplete="off" />
         </label>
       <button class="strong" disabled=${busy}>${t("day.passage.save")}</button></form>`
     }
@@ -85,7 +89,7 @@ export function Said({ name, said, rows }) {
       html`<ul class="plain-list bounded" tabindex="0"
       aria-label=${t("day.said")}>${left.map(
         (one) => html`<${Row} key=${key(one) + one.row} name=${name} one=${one}
-      rows=${rows} saved=${(/** @type {string} */ file) => tell((before) => ({ ...before, [key(one)]: file }))} />`,
+      rows=${rows} saved=${(/** @type {string} */ path) => tell((before) => ({ ...before, [key(one)]: path }))} />`,
       )}</ul>`
     }
     <p role="status">${file ? t("day.passage.saved", { file }) : ""}</p></section>`

@@ -3,7 +3,7 @@
 /** @import { Data, Stretch } from "../types" */
 import { JOB } from "../live.js";
 import { Quote, reasonOf } from "../quoted.js";
-import { Dialog, html, t, useState, valueOf } from "../ui.js";
+import { Dialog, html, t, useState, typed } from "../ui.js";
 
 /**
  * A visit that was kept: the file of the story, and a remark if it plays otherwise than it was.
@@ -30,7 +30,8 @@ function KeepDialog({ name, visit, onClose, kept }) {
     [busy, wait] = useState(false);
   const save = async (/** @type {SubmitEvent} */ submitted) => {
     submitted.preventDefault();
-    (complain(""), wait(true));
+    complain("");
+    wait(true);
     try {
       kept(await keep({ robot: name, position: visit.from, visitor: visit.visitor ?? "", name: other }));
       onClose();
@@ -45,7 +46,7 @@ function KeepDialog({ name, visit, onClose, kept }) {
       ${
         visit.visitor &&
         html`<label>${t("story.name", { name: visit.visitor })}<input autofocus required maxlength="60"
-        autocomplete="off" value=${other} onInput=${(/** @type {Event} */ e) => write(valueOf(e))} /></label>`
+        autocomplete="off" value=${other} onInput=${typed(write)} /></label>`
       }
       <p role="status">${busy ? t("loading") : ""}</p>
       <p class="bad" role="alert"><${Quote} text=${wrong} /></p></form></${Dialog}>`;

@@ -4,7 +4,7 @@
 import { robotOf } from "../live.js";
 import { Quote, reasonOf } from "../quoted.js";
 import { may } from "../session.js";
-import { fixed, html, languageName, t, useEffect, useRef, useState, valueOf } from "../ui.js";
+import { fixed, html, languageName, t, useEffect, useRef, useState, typed } from "../ui.js";
 
 const LIMIT = 15000; // [ms]
 
@@ -23,7 +23,7 @@ function Pair({ code, own, texts, write, first = null }) {
     <span>${t(`day.passage.${what}`)} (${name})</span><input ref=${ref} lang=${code} value=${texts[what] ?? ""}
       maxlength="1000"
       required=${own || Boolean(texts.question || texts.answer)} autocomplete="off"
-      onInput=${(/** @type {Event} */ e) => write({ ...texts, [what]: valueOf(e) })} /></label>`;
+      onInput=${typed((text) => write({ ...texts, [what]: text }))} /></label>`;
   return html`${!own && field("question", null)}${field("answer", first)}`;
 }
 
@@ -38,7 +38,8 @@ function Row({ name, one, saved }) {
   const languages = [one.language, ...(robotOf(name)?.languages ?? []).filter((code) => code !== one.language)];
   const save = async (/** @type {SubmitEvent} */ submitted) => {
     submitted.preventDefault();
-    (wait(true), complain(""));
+    wait(true);
+    complain("");
     const { [one.language]: own, ...others } = texts;
     const also = Object.fromEntries(Object.entries(others).filter(([, pair]) => pair.question || pair.answer));
     try {
@@ -50,7 +51,10 @@ function Row({ name, one, saved }) {
         signal: AbortSignal.timeout(LIMIT),
       });
       const said = await sent.json().catch(() => ({}));
-      if (sent.ok) return saved(said.file);
+      if (sent.ok) {
+        saved(said.file);
+        return;
+      }
       complain(said.reason ?? `${sent.status}`);
     } catch (error) {
       complain(reasonOf(error));
@@ -88,7 +92,7 @@ export function Unanswered({ name, rows }) {
       ? html`<p class="quiet">${t("day.none.numbers")}</p>`
       : html`<ul class="plain-list">${left.map(
           (one) => html`<${Row} key=${key(one)} name=${name} one=${one}
-        saved=${(/** @type {string} */ file) => tell((before) => ({ ...before, [key(one)]: file }))} />`,
+        saved=${(/** @type {string} */ path) => tell((before) => ({ ...before, [key(one)]: path }))} />`,
         )}</ul>`
   }
     <p role="status">${file ? t("day.passage.saved", { file }) : ""}</p></section>`;

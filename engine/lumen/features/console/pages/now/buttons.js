@@ -47,12 +47,13 @@ function Button({ robot, button: declared }) {
   };
   const click = () => {
     if (!button.enabled || button.confirm === "hold") return;
-    button.confirm === "ask" ? ask(true) : press();
+    if (button.confirm === "ask") ask(true);
+    else press();
   };
   useEffect(() => end, []);
   useEffect(() => {
     if (!button.key) return undefined;
-    const typed = (/** @type {KeyboardEvent} */ event) => {
+    const pressed = (/** @type {KeyboardEvent} */ event) => {
       if (event.key !== button.key || event.repeat || event.ctrlKey || event.metaKey || event.altKey) return;
       if (/** @type {Element} */ (event.target).closest("input, textarea, select, dialog")) return;
       event.preventDefault();
@@ -68,10 +69,10 @@ function Button({ robot, button: declared }) {
     const released = (/** @type {KeyboardEvent} */ event) => {
       if (event.key === button.key) end();
     };
-    addEventListener("keydown", typed);
+    addEventListener("keydown", pressed);
     addEventListener("keyup", released);
     return () => {
-      removeEventListener("keydown", typed);
+      removeEventListener("keydown", pressed);
       removeEventListener("keyup", released);
     };
   });

@@ -2,7 +2,7 @@
 // Cues of an author: any motion, posture, state or event, whatever the behaviour is doing.
 /** @import { Robot } from "../types" */
 import { command } from "../commands.js";
-import { Part, html, t, useState, valueOf } from "../ui.js";
+import { Part, html, t, useState, typed } from "../ui.js";
 
 /**
  * A motion, a posture or a state; `free` if its name is typed.
@@ -17,8 +17,8 @@ function Cue({ robot, kind, names, field, free = false }) {
   return html`<form class="cue" onSubmit=${send}><label class="grow"><span>${t(`cue.${kind}`)}</span>
     ${
       free
-        ? html`<input value=${chosen} onInput=${(/** @type {Event} */ e) => choose(valueOf(e))} autocomplete="off" />`
-        : html`<select value=${chosen} onChange=${(/** @type {Event} */ e) => choose(valueOf(e))}>${names.map(
+        ? html`<input value=${chosen} onInput=${typed(choose)} autocomplete="off" />`
+        : html`<select value=${chosen} onChange=${typed(choose)}>${names.map(
             (name) => html`<option
           value=${name} selected=${name === chosen}>${name}</option>`,
           )}</select>`
@@ -37,18 +37,19 @@ function EventCue({ robot }) {
     try {
       body = JSON.parse(data || "{}");
     } catch {
-      return tell(t("cue.data.wrong"));
+      tell(t("cue.data.wrong"));
+      return;
     }
     tell("");
     command(robot.robot, "event", { event: name, data: body }, `${t("command.event")} ${name}`);
   };
   return html`<form class="cue" onSubmit=${send}><label class="grow"><span>${t("cue.event")}</span>
-      <select value=${name} onChange=${(/** @type {Event} */ e) => choose(valueOf(e))}>${(robot.events ?? []).map(
+      <select value=${name} onChange=${typed(choose)}>${(robot.events ?? []).map(
         (one) => html`<option
         value=${one} selected=${one === name}>${one}</option>`,
       )}</select></label>
     <label class="grow"><span>${t("cue.data")}</span><input class="code" value=${data}
-      onInput=${(/** @type {Event} */ e) => set(valueOf(e))} aria-invalid=${wrong ? "true" : null} autocomplete="off"
+      onInput=${typed(set)} aria-invalid=${wrong ? "true" : null} autocomplete="off"
       spellcheck=${false} /></label>
     <button>${t("cue.event.send")}</button><p class="bad" role="alert">${wrong}</p></form>`;
 }

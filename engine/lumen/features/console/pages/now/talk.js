@@ -18,7 +18,7 @@ import {
   useEffect,
   useRef,
   useState,
-  valueOf,
+  typed,
 } from "../ui.js";
 import { Prepared, usePrepared } from "./prepared.js";
 
@@ -99,11 +99,11 @@ function SayForm({ robot }) {
     );
   };
   return html`<form class="say" onSubmit=${say}><label class="grow"><span>${t("say.text")}</span>
-      <input value=${text} maxlength="500" lang=${spoken} onInput=${(/** @type {Event} */ e) => set(valueOf(e))} autocomplete="off" />
+      <input value=${text} maxlength="500" lang=${spoken} onInput=${typed(set)} autocomplete="off" />
         </label>
     ${
       languages.length > 1 &&
-      html`<label><span>${t("language")}</span><select value=${spoken} onChange=${(/** @type {Event} */ e) => choose(valueOf(e))}>
+      html`<label><span>${t("language")}</span><select value=${spoken} onChange=${typed(choose)}>
       ${languages.map(
         (one) => html`<option value=${one}
         selected=${one === spoken}>${languageName(one)}</option>`,

@@ -58,7 +58,8 @@ export class Scene {
     this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true });
     this.camera = new THREE.PerspectiveCamera(38, 4 / 3, 0.05, 30);
     this.camera.up.set(0, 0, 1);
-    ((this.turn = Math.atan2(EYE[1], EYE[0])), (this.far = Math.hypot(EYE[0], EYE[1])));
+    this.turn = Math.atan2(EYE[1], EYE[0]);
+    this.far = Math.hypot(EYE[0], EYE[1]);
     this.scene.add(new THREE.HemisphereLight(0xffffff, 0x667788, 1.6));
     const sun = new THREE.DirectionalLight(0xffffff, 2);
     sun.position.set(2, 1, 4);
