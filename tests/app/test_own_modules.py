@@ -340,6 +340,26 @@ def test_if_lumen_yaml_is_broken_its_errors_come_before_an_unknown_part(
     assert "there is no part" not in said
 
 
+@pytest.mark.parametrize("only", ["mood", "memory", "brain,mood", "visitor"])
+def test_each_part_starts_with_the_last_good_files_if_lumen_yaml_is_broken(
+    only: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    root = copied_project(ROOT / "examples/minimal", tmp_path / "hall")
+    (root / "mood.py").write_text("")
+    main_file = root / "lumen.yaml"
+    main_file.write_text(f"{main_file.read_text()}modules: {{mood: {{command: [python3, mood.py]}}}}\n")
+    assert main(["run", str(root), "--robot", "recording", "--speed", "max", "--for", "1s"]) == 0
+    main_file.write_text(f"{main_file.read_text()}robot: [\n")
+    capsys.readouterr()
+    assert main(["run", str(root), "--only", only]) == 1
+    assert main(["run", str(root), "--only", only, "--last-good"]) == 2
+    said = capsys.readouterr().err
+    assert "THE FILES HAVE ERRORS: IT STARTS WITH THE LAST GOOD ONES" in said
+    assert "several processes need a common bus" in said
+    assert main(["run", str(root), "--only", "mod", "--last-good"]) == 2
+    assert "there is no part `mod`: did you mean `mood`?" in capsys.readouterr().err
+
+
 def test_a_program_on_another_machine_shows_that_it_lives_over_a_broker(
     project: Project, time: Time, broker: RabbitMQ
 ) -> None:

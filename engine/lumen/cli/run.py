@@ -19,9 +19,10 @@ from lumen.cli.run_verdict import FAILED, INTERRUPTED, TROUBLED, WELL, RunVerdic
 from lumen.cli.streams import complain
 from lumen.cli.transcript import Transcript
 from lumen.clock.following import FollowingClock
-from lumen.errors import UsageError
+from lumen.errors import ProjectError, UsageError
 from lumen.feature import table
 from lumen.journal.journal_folder import JOURNAL_FOLDER
+from lumen.language.projects import Project
 from lumen.language.stories import Story
 from lumen.ports import Clock
 from lumen.project.broken_features import broken_features
@@ -38,6 +39,7 @@ from lumen.run.one_robot import robots_of
 from lumen.run.plan import Plan
 from lumen.run.presence import BRAIN, ROBOT_PART, all_parts
 from lumen.run.processes.choosing import parts_of
+from lumen.run.recovery.run_directory import RunDirectory
 from lumen.run.reload.reloader import MODES
 from lumen.run.run_start import BegunRun, started
 from lumen.run.services import Services
@@ -164,8 +166,21 @@ def _parts(options: argparse.Namespace, root: Path) -> tuple[str, ...]:
     try:
         return parts_of(options.only, options.robot, settings.modules if settings else {})
     except UsageError:
-        load(root)  # a part may be unknown only because lumen.yaml, which names it, has errors: these come first
+        try:
+            load(root)  # a part may be unknown only because lumen.yaml, which names it, has errors: these come first
+        except ProjectError:
+            if (good := _last_good(options, root)) is None:
+                raise
+            return parts_of(options.only, options.robot, good.modules)
         raise
+
+
+def _last_good(options: argparse.Namespace, root: Path) -> Project | None:
+    """Return the last good bundle if the options allow a start with it; None if none was kept."""
+    if not options.last_good:
+        return None
+    robot = next(iter(robots_of(root, options.robot_name)), "")
+    return RunDirectory(root, robot, guest=True).last_good()
 
 
 def _house(options: argparse.Namespace, start: BegunRun, parts: tuple[str, ...]) -> RunVerdict:

@@ -23,6 +23,7 @@ from lumen.run.reload.reloader import Reloader, ReloadOptions
 from lumen.run.reload.report import ReloadReport
 from lumen.run.reload.validation_worker import load_apart
 from lumen.run.resuming import FreshStart, Resumption
+from lumen.run.snapshot_store import SnapshotStore
 
 _log = logging.getLogger(__name__)
 
@@ -153,10 +154,11 @@ class RunDirectory:
     def last_good(self) -> Project | None:
         """Return the last good bundle that ran; None if none was kept.
 
-        It is loaded in another process, because files may crash the process that reads them.
+        A guest reads it in the home of the process that has a brain, which may hold that home. It is loaded in another
+        process, because files may crash the process that reads them.
         """
-        keeper = self.records.keeper
-        files = keeper.files(keeper.good()) if keeper else None
+        keeper = self.records.keeper or SnapshotStore(Home(home_of(self.root, self.robot)))
+        files = keeper.files(keeper.good())
         return load_apart(self.root, as_robot(files, self.robot))[0] if files else None
 
     def resumption(self, project: Project) -> Resumption | FreshStart:
