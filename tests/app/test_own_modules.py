@@ -12,11 +12,17 @@ import pytest
 from lumen.bus import Bus, connect, join
 from lumen.bus.memory import MemoryBus
 from lumen.cli.main import main
+from lumen.clock.real import RealClock
+from lumen.errors import UsageError
 from lumen.language.events import Event
 from lumen.language.modules import ModuleSettings
 from lumen.language.projects import Project
 from lumen.project import load
+from lumen.run.claiming import refuse_rivals
 from lumen.run.parts.own_module import OwnModulePart
+from lumen.run.plan import Plan
+from lumen.run.presence import PRESENCE_ROUTE, Presence
+from lumen.run.services import Services
 from lumen.upkeep.supervised_process import FIRST_PAUSE, MAX_LINES, SupervisedProcess
 from tests import ROOT
 from tests.copying import copied_project
@@ -358,6 +364,43 @@ def test_each_part_starts_with_the_last_good_files_if_lumen_yaml_is_broken(
     assert "several processes need a common bus" in said
     assert main(["run", str(root), "--only", "mod", "--last-good"]) == 2
     assert "there is no part `mod`: did you mean `mood`?" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("roles", "here", "parts"),
+    [
+        (("mood",), "", ("host of mood",)),
+        (("brain", "mood"), "", ("brain", "host of mood")),
+        (("brain",), ", here: true", ("brain", "host of mood")),
+        (("brain",), "", ("brain",)),
+        (("eyes",), ", here: true", ("eyes",)),
+    ],
+)
+def test_a_process_claims_the_programs_that_it_starts(
+    roles: tuple[str, ...], here: str, parts: tuple[str, ...], tmp_path: Path
+) -> None:
+    root = copied_project(ROOT / "examples/minimal", tmp_path / "hall")
+    (root / "mood.py").write_text("")
+    with (root / "lumen.yaml").open("a") as file:
+        file.write(f"modules: {{mood: {{command: [python3, mood.py]{here}}}}}\n")
+    project, bus = load(root), MemoryBus()
+    first, second = (_claiming(project, bus, roles) for _ in range(2))
+    assert first.parts == second.parts == parts
+    first.settle()
+    for each in (second, first, second):
+        each.tick()
+    with pytest.raises(UsageError, match=f"is already the {parts[0]} of .* on this bus"):
+        refuse_rivals(second)
+    other = Presence(bus, project.robot, ("visitor",), key=project.key_of(PRESENCE_ROUTE))
+    other.tick()
+    refuse_rivals(other)
+
+
+def _claiming(project: Project, bus: Bus, roles: tuple[str, ...]) -> Presence:
+    """The presence of a process with these roles."""
+    presence = Services(Plan(project, None, bus, roles=roles, clock=RealClock())).presence
+    assert presence
+    return presence
 
 
 def test_a_program_on_another_machine_shows_that_it_lives_over_a_broker(

@@ -1,4 +1,4 @@
-"""The claim of a robot's name: a bus has one robot of a name, with one brain and one motion module.
+"""The claim of a robot's name: a bus has one robot of a name, with one brain and one module of each kind.
 
 A process whose robot or part is already there is refused.
 """
@@ -10,7 +10,7 @@ from lumen.bus.validated import ValidatedBus
 from lumen.errors import BusUnreachableError, UsageError
 from lumen.language.projects import Project
 from lumen.ports import BlockableBus, Bus
-from lumen.run.presence import PRESENCE_ROUTE, Presence, unique_parts, where_it_runs
+from lumen.run.presence import PRESENCE_ROUTE, Presence, where_it_runs
 
 CLAIM_DURATION = 0.8
 """The time that a process waits for objections to its claim [s]."""
@@ -25,8 +25,8 @@ def presence_of(project: Project, bus: Bus, parts: tuple[str, ...], more: Callab
 
 def refuse_rivals(presence: Presence) -> None:
     """Raise UsageError if another process on the bus already has one of this presence's unique parts."""
-    for part in unique_parts():
-        if part in presence.parts and (rival := presence.rival(part)):
+    for part in presence.claims:
+        if rival := presence.rival(part):
             raise UsageError(
                 f"{where_it_runs(rival)} is already the {part} of {presence.robot} on this bus:"
                 " end it first, or give this project's robot another name"
@@ -36,7 +36,7 @@ def refuse_rivals(presence: Presence) -> None:
 def refuse_silence(bus: ValidatedBus, presence: Presence) -> None:
     """Raise BusUnreachableError if a rival could not answer because the broker accepts no messages."""
     if (broker := bus.ability(BlockableBus)) and broker.blocked:
-        parts = " or ".join(part for part in unique_parts() if part in presence.parts)
+        parts = " or ".join(presence.claims)
         raise BusUnreachableError(
             f"the broker is short of {broker.blocked} and accepts no messages, so Lumen can't check whether another"
             f" process is the {parts} of {presence.robot}: start again when"

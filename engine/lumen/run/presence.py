@@ -52,6 +52,14 @@ def unique_parts() -> tuple[str, ...]:
     return tuple(part for part in all_parts() if part != VISITOR)
 
 
+def host_of(module: str) -> str:
+    """Return the part of a process that starts the program of a module of the project's own.
+
+    The module itself is there only while that program runs.
+    """
+    return f"host of {module}"
+
+
 @dataclass
 class Peer:
     """Another process."""
@@ -100,6 +108,11 @@ class Presence:
         self._lost: dict[str, float] = {}
         self._known: set[str] = set()
         self._undo = bus.subscribe(key, self._messages.append)
+
+    @property
+    def claims(self) -> tuple[str, ...]:
+        """The parts of this process of which each robot has one, unlike visitors."""
+        return tuple(part for part in self.parts if part != VISITOR)
 
     @property
     def settled(self) -> bool:

@@ -19,7 +19,7 @@ from lumen.run.parts.added import AddedPart
 from lumen.run.parts.part import Part
 from lumen.run.parts.robot import RobotPart
 from lumen.run.plan import Plan
-from lumen.run.presence import BRAIN, MOTION, ROBOT_PART, Presence
+from lumen.run.presence import BRAIN, MOTION, ROBOT_PART, Presence, host_of
 from lumen.run.setup import Setup
 from lumen.run.story import staged
 
@@ -139,8 +139,10 @@ class Services:
     def _presence(self) -> Presence:
         plan = self.plan
         here = tuple(name for name, said in plan.project.modules.items() if said.here and not said.own)
-        own = own_modules(plan.project.modules)  # a program is announced only while it runs
+        own = own_modules(plan.project.modules)  # a program is announced only while it runs, its host always
         parts = [role for role in plan.roles if role not in own] if plan.roles else [ROBOT_PART, BRAIN, MOTION, *here]
+        starts = plan.brain and plan.story is None
+        parts += [host_of(name) for name, said in own.items() if name in plan.roles or (said.here and starts)]
         return presence_of(plan.project, self.bus, tuple(parts), self._said)
 
     def _said(self) -> dict[str, Any]:

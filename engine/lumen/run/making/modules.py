@@ -13,7 +13,7 @@ from lumen.run.parts.module_troubles import ModuleTroublesPart
 from lumen.run.parts.own_module import OwnModulePart
 from lumen.run.parts.part import Part
 from lumen.run.parts.robot import RobotPart
-from lumen.run.presence import BRAIN, MOTION, ROBOT_PART
+from lumen.run.presence import BRAIN, MOTION, ROBOT_PART, host_of
 from lumen.run.services import Services
 
 
@@ -89,4 +89,5 @@ def _share(services: Services, names: list[str]) -> None:
     if faces and EYES in names:
         faces.quiet = True
     if services.presence:
-        services.presence.parts = (ROBOT_PART, BRAIN, MOTION, *names)
+        hosts = [part for part in services.presence.parts if part in map(host_of, services.project.modules)]
+        services.presence.parts = (ROBOT_PART, BRAIN, MOTION, *names, *hosts)
