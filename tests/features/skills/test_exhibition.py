@@ -1,16 +1,25 @@
 """Skills in a whole exhibition: performed by a custom robot, reloaded, and refused while a person holds the robot."""
 
 from collections.abc import Callable
+from itertools import count
 from pathlib import Path
 
 import pytest
 
 import lumen
 from lumen.features.skills.part import SkillsPart
+from lumen.features.skills.workshop import is_pretending
+from lumen.language.commands import Do
 from lumen.language.events import Event
+from lumen.language.stories import Visitor
 from lumen.lint import check_files
 from lumen.project.files import read_files
+from lumen.robot.skill_runner import SkillRunner
+from lumen.run.compose import compose, start
 from lumen.run.exhibition import Exhibition
+from lumen.run.plan import Plan
+from lumen.run.rehearsal import RehearsalTrace
+from lumen.run.setup import set_up, set_up_with
 from tests.features.skills.changing import BEHAVIOR, CODE, MANIFEST, STORY, project_in
 from tests.seams.test_joints import Obedient
 from tests.waiting import threads, until
@@ -109,3 +118,39 @@ def test_the_presence_has_the_hash_of_each_skills_code(tmp_path: Path) -> None:
         before = part.said["skills"]["spray"]
         edit(root, CODE, "litres", "liters")
         until(lambda: part.said["skills"]["spray"] != before)
+
+
+class InHall(Obedient):
+    """A robot that performs skills, in a hall of its own."""
+
+    def place(self, visitor: Visitor | None) -> None: ...
+
+    def face(self) -> None:
+        return None
+
+
+def test_a_story_on_a_robot_that_performs_skills_prints_that_it_does_not(tmp_path: Path) -> None:
+    project = lumen.load(project_in(tmp_path, SHORT))
+    printed = {}
+    for setup in (set_up_with(InHall()), set_up("recording", project, "max")):
+        trace = RehearsalTrace(setup.clock.now, lambda: project.machine)
+        services = compose(Plan(project, setup, story=project.stories["visitor"], narrator=trace))
+        start([services])
+        assert is_pretending(project.verbs["spray"])
+        services.node.close()
+        assert not is_pretending(project.verbs["spray"])
+        printed[type(setup.robot).__name__] = [text for _, who, text in trace.lines if who == "skills"]
+    said = ["a story does not run their code: the robot only waits during `spray`"]
+    assert list(printed.values()) == [said, []]
+
+
+def test_a_skill_without_an_exhibition_is_pretended_with_a_warning(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    row = lumen.load(project_in(tmp_path)).verbs["spray"]
+    runner = SkillRunner()
+    call = runner.begin(Do("spray", {"duration": "1s", "nozzle": "left"}, row=row), 0.0)
+    times = count()
+    until(lambda: call.advance(float(next(times))))
+    runner.close()
+    assert "`spray` was only pretended: no exhibition of its project is open in this process" in caplog.text

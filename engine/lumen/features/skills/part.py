@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from lumen.errors import BusError
-from lumen.features.skills.workshop import Workshop, open_workshop
+from lumen.features.skills.workshop import Workshop, open_workshop, pretend
 from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.ports import Bus, PretendsSkills
@@ -87,13 +87,36 @@ class SkillsPart(Part):
             pass  # the line above is printed in any case
 
 
-def skills(services: Services) -> SkillsPart | None:
-    """Make the part; None in a story and on a recording robot, which run no code of skills without REAL_SKILLS."""
+class PretendedSkillsPart(Part):
+    """The part of an exhibition whose robot only lets the time of skills pass; on a real robot it prints that."""
+
+    name = "skills"
+    patient = True
+
+    def __init__(self, project: Project, tell: Callable[[str, str], None], *, real: bool) -> None:
+        self._names = ", ".join(f"`{name}`" for name in project.verbs)
+        self._tell, self._real = tell, real
+        self._close: Callable[[], None] | None = pretend(project)
+
+    def begin(self, now: float) -> None:
+        if self._real:
+            self._tell("skills", f"a story does not run their code: the robot only waits during {self._names}")
+
+    def close(self) -> None:
+        if self._close:
+            self._close()
+            self._close = None
+
+
+def skills(services: Services) -> Part | None:
+    """Make the part: a story and a recording robot run no code of skills without REAL_SKILLS."""
     plan = services.plan
     hall = services.setup.hall
+    simulated = isinstance(hall, PretendsSkills)
     pretends = plan.story is not None or (isinstance(hall, PretendsSkills) and hall.runs_no_skills)
     if pretends and not plan.options.get(REAL_SKILLS):
-        return None
+        project = services.project
+        return PretendedSkillsPart(project, services.narrator.line, real=not simulated) if project.verbs else None
     if (behavior := services.get(LiveBehavior)) is None:
         return SkillsPart(services.project, services.bus, services.narrator.line)
     return SkillsPart(services.project, services.bus, services.narrator.line, lambda event: behavior.loop.happen(event))

@@ -1,5 +1,6 @@
 """The performer of skills: passes a call to a program, and the program's requests to the robot and the bus."""
 
+import logging
 from collections.abc import Callable, Mapping
 from math import inf
 from typing import Any
@@ -8,7 +9,7 @@ from lumen.errors import BusError, RobotFailedError
 from lumen.features.skills.manifest import Skill
 from lumen.features.skills.module_call import ModuleCall
 from lumen.features.skills.process import GRACE, SkillProcess
-from lumen.features.skills.workshop import Workshop, workshop_of
+from lumen.features.skills.workshop import Workshop, is_pretending, workshop_of
 from lumen.language.added_verbs import default_result
 from lumen.language.causes import MessageOrigin
 from lumen.language.commands import Do, Say
@@ -26,11 +27,18 @@ MAX_TEXT = 1_000
 MAX_REQUESTS = 200
 """The greatest number of texts and messages that a program may send during a call."""
 
+_log = logging.getLogger(__name__)
+
 
 def perform(call: SkillCall) -> Mapping[str, Any]:
-    """Perform a skill by its program; in a story without code, let its time pass. Raises RobotError if it fails."""
+    """Perform a skill by its program. Raises RobotError if it fails.
+
+    Without a workshop only its time passes: in a story on purpose, otherwise with a warning.
+    """
     workshop, skill = workshop_of(call.row), call.row.details
     if workshop is None or not isinstance(skill, Skill):
+        if not is_pretending(call.row):
+            _log.warning("`%s` was only pretended: no exhibition of its project is open in this process", call.skill)
         call.wait(time_taken(Do(call.skill, call.arguments, row=call.row)))
         return default_result(call.row)
     try:

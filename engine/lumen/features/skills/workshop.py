@@ -341,6 +341,22 @@ def open_workshop(workshop: Workshop) -> Callable[[], None]:
     return close
 
 
+_pretending: list[tuple[str, str]] = []
+"""The project's folder and the robot of each exhibition that pretends its skills on purpose."""
+
+
+def pretend(project: Project) -> Callable[[], None]:
+    """Note that the calls of this project's robot run no code on purpose; return the function that ends that."""
+    key = (project.root, project.robot)
+    _pretending.append(key)
+    return lambda: _pretending.remove(key)
+
+
+def is_pretending(row: VerbRow) -> bool:
+    """Return whether an exhibition of a skill's project and robot runs no code on purpose, as a story does."""
+    return (row.root, row.robot) in _pretending
+
+
 def workshop_of(row: VerbRow) -> Workshop | None:
     """Return the open workshop of a skill's project and robot; None in a story, and outside of an exhibition."""
     return _open.get((row.root, row.robot))
