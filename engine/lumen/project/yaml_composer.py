@@ -92,24 +92,23 @@ class _Composer:
         if depth > MAX_NODE_DEPTH:
             raise TooLargeError(f"nested deeper than {MAX_NODE_DEPTH} levels", event.start_mark)
         kind, before = type(event), self._count
-        self._add(1, event)
-        if kind is yaml.AliasEvent:
-            return self._named_before(event)
+        self._count = before + 1
+        if before >= MAX_NODES:
+            raise _too_many(event)
         node: yaml.Node
-        if kind is yaml.ScalarEvent:
+        if kind is yaml.ScalarEvent:  # most events are: they need no further call
             value = event.value.translate(self._meant) if self._meant else event.value
             node = yaml.ScalarNode(event.tag or _TEXT, value, event.start_mark, event.end_mark, event.style)
+            if event.anchor is None:
+                return node
             self._named(event, node)
+        elif kind is yaml.AliasEvent:
+            return self._named_before(event)
         else:
             node = self._list(event, depth + 1) if kind is yaml.SequenceStartEvent else self._map(event, depth + 1)
         if event.anchor is not None:
             self._sizes[event.anchor] = self._count - before
         return node
-
-    def _add(self, nodes: int, event: Any) -> None:
-        self._count += nodes
-        if self._count > MAX_NODES:
-            raise TooLargeError(f"more than {MAX_NODES:,} values", event.start_mark)
 
     def _list(self, event: Any, depth: int) -> yaml.Node:
         node = self._named(event, yaml.SequenceNode(event.tag or _LIST, [], event.start_mark, None, event.flow_style))
@@ -139,5 +138,11 @@ class _Composer:
             raise UnknownAliasError(event.anchor, tuple(self._anchors), event.start_mark)
         if event.anchor not in self._sizes:
             raise TooLargeError("an alias refers to the node that contains it", event.start_mark)
-        self._add(self._sizes[event.anchor] - 1, event)
+        self._count += self._sizes[event.anchor] - 1
+        if self._count > MAX_NODES:
+            raise _too_many(event)
         return self._anchors[event.anchor]
+
+
+def _too_many(event: Any) -> TooLargeError:
+    return TooLargeError(f"more than {MAX_NODES:,} values", event.start_mark)

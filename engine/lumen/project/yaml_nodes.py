@@ -55,7 +55,7 @@ class NodeReader:
         self.dropped: set[str] = set()
 
     def read(self, node: yaml.Node, path: NodePath, key: yaml.Node | None, depth: int) -> Any:
-        self.spans[path] = _new(NodeSpan, (self.place(key) if key else None, self.place(node)))
+        self.spans[path] = _new(NodeSpan, (None if key is None else self.place(key), self.place(node)))
         if depth > MAX_NODE_DEPTH or len(self.spans) > MAX_NODES:
             self.overflow(node, depth)
             return None
