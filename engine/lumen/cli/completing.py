@@ -81,7 +81,10 @@ def _values(action: argparse.Action, names: Names) -> Iterator[Candidate]:
 
 
 def _positional(parser: Suggesting, number: int) -> argparse.Action | None:
-    """Return the positional argument that gets the word at this index; a last one with `*` or `+` gets all the rest."""
+    """Return the positional argument for the word at this index, None beyond the last.
+
+    A last one with `*` or `+` gets all the rest.
+    """
     found = [action for action in parser._actions if not action.option_strings and action.nargs != 0]
     if number < len(found):
         return found[number]

@@ -23,7 +23,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Print the script of a shell, or the completions of the given words; return 0."""
+    """Print the script of a shell, or the completions of the given words; return 0.
+
+    Raises UsageError if words follow the shell's name.
+    """
     if options.shell == WORDS:
         typed = [word.removeprefix(".") for word in options.words]
         for word, says in candidates(command_line(typed[:1]), typed, names_of):

@@ -48,7 +48,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Write the export; return 0 if it is complete, 1 if parts that the format can't express were left out."""
+    """Write the export; return 0 if it is complete, 1 if parts that the format can't express were left out.
+
+    Raises UsageError if the project has no behaviour or controller of the given name.
+    """
     root = shown_project(options.project)
     project = lumen.load(root)
     row: Exporter = table("exporters")[options.target]

@@ -27,7 +27,7 @@ class ProgressState(NamedTuple):
     """The last report of progress."""
 
     done: float = 0.0
-    """The amount done."""
+    """The amount of work that is done, in the unit of `whole`."""
     whole: float = 0.0
     """The whole amount, or an upper bound of it; 0 if unknown."""
     name: str = ""

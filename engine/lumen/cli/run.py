@@ -184,7 +184,7 @@ def _last_good(options: argparse.Namespace, root: Path) -> Project | None:
 
 
 def _house(options: argparse.Namespace, start: BegunRun, parts: tuple[str, ...]) -> RunVerdict:
-    """Run several robots in this process."""
+    """Run several robots in this process, and return how the run went."""
     from lumen.cli.house_run import HouseRun  # only a run of several robots needs it
 
     return HouseRun(options, start, parts).run()

@@ -21,7 +21,7 @@ class RobotOption(NamedTuple):
 
     name: str
     metavar: str
-    """The placeholder of its value in `--help`."""
+    """The placeholder of the option's value in `--help`."""
     help: str
     short: bool = False
     """True if the option is `--NAME`; else it is `--robot-NAME`."""
@@ -95,7 +95,7 @@ class SenseRow(NamedTuple):
     """
 
     meaning: str
-    """The purpose of its route."""
+    """The purpose of the sense's route."""
     encode: str = ""
     """An import string of a function from a reading to the body of a message."""
     decode: str = ""
@@ -115,7 +115,7 @@ class BusRow(NamedTuple):
     open: str
     """An import string of a function from an address and the name of a sender to a `lumen.ports.Bus`."""
     forms: tuple[str, ...]
-    """The forms of its addresses, shown if an address is wrong."""
+    """The forms of the bus's addresses, shown if an address is wrong."""
     example: str = ""
     """An address, shown in `--help`."""
     within_process: bool = False
@@ -153,7 +153,7 @@ class FunctionRow(NamedTuple):
     parameters: tuple[str, ...]
     """The kinds that each argument may have: `text`, several as `text|list`, or `any`."""
     returns: str
-    """The kinds that its value may have."""
+    """The kinds that the function's value may have."""
     example: str = ""
     """Arguments as an author would write them."""
     scoped: bool = False
@@ -181,7 +181,7 @@ class VerbRow(NamedTuple):
     result: Mapping[str, Any] = {}
     """The JSON Schema of the performer's result, an object."""
     takes: str = "0s"
-    """The time that it takes: a duration that can contain expressions of the arguments, `{{ times * 0.4 }}s`."""
+    """The time that the verb takes: a duration that can contain expressions of the arguments, `{{ times * 0.4 }}s`."""
     parts: tuple[str, ...] = ()
     """The parts of the body that no other command may use meanwhile (`lumen.language.body_parts`)."""
     moves: bool = False
@@ -192,7 +192,7 @@ class VerbRow(NamedTuple):
     Otherwise it continues. In either case the robot does not wait for it.
     """
     details: object = None
-    """The settings for its performer, of a verb that a file of a project declares."""
+    """The settings for the verb's performer, if a file of a project declares the verb."""
     root: str = ""
     """The project's folder, for such a verb of a loaded project."""
     robot: str = ""
@@ -243,7 +243,7 @@ class Subcommand(NamedTuple):
     """A subcommand of `lumen`."""
 
     summary: str
-    """Its description in `lumen --help`."""
+    """The subcommand's description in `lumen --help`."""
     module: str
     """A module with two functions.
 
@@ -333,7 +333,10 @@ class PartRow(NamedTuple):
 
     name: str
     phase: Phase
-    """When it is made and ticked. In a phase, parts are in the order of their names, except for `after`."""
+    """The phase in which the part is made and ticked.
+
+    In a phase, parts are in the order of their names, except for `after`.
+    """
     make: str
     """An import string of a function from the services made so far to a part, a list of parts, or None."""
     when: str = ""

@@ -18,9 +18,9 @@ class Expression:
 
     source: str
     where: NodePath = field(default=(), compare=False)
-    """Its path in the document."""
+    """The path of the text in the document."""
     written: str = field(default="", compare=False)
-    """The author's text, if it differs from `source`, as if a `for` replaces `question.ask` by a path; else empty."""
+    """The author's text if it differs from `source`, because a `for` replaced names by paths; else empty."""
 
     @property
     def shown(self) -> str:

@@ -18,13 +18,13 @@ class Button:
     """
 
     label: Mapping[str, str]
-    """Its texts by language; a text that serves all languages has the empty code."""
+    """The button's texts by language; a text that serves all languages has the empty code."""
     event: str
     data: Any = None
     confirm: Confirmation = ""
-    """`hold`: it must be held down; `ask`: it must be confirmed; empty: neither."""
+    """`hold` if the button must be held down, `ask` if the press must be confirmed, empty for neither."""
     key: str = ""
-    """The one key that presses it."""
+    """The only key of a keyboard that presses the button; empty for none."""
     where: NodePath = field(default=(), compare=False)
 
     def named(self, name: str) -> bool:

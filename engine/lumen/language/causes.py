@@ -24,9 +24,9 @@ class MessageOrigin(NamedTuple):
 
     id: str = ""
     sender: str = ""
-    """The program that sent it."""
+    """The program that sent the message."""
     time: float = 0.0
-    """When it was sent [s since 1970, in UTC]."""
+    """The time at which the message was sent [s since 1970, in UTC]."""
     cause: str = ""
     """The part of the behaviour that caused it: the id of a command (`d3`), or a step (`step 42`)."""
 

@@ -88,18 +88,18 @@ class Variable:
     unit: str = ""
     direction: str = ""
     default: float | None = None
-    """The value of an output if no rule fires."""
+    """The value of an output if no rule fires; None if the file sets none."""
     neutral: float | None = None
     lock_range: bool = False
-    """Keep the value within the range."""
+    """True to keep the value within the range."""
     lock_previous: bool = False
-    """Keep the previous value of an output if no rule fires."""
+    """True to keep the previous value of an output if no rule fires."""
     aggregation: str = "maximum"
     defuzzifier: str = "centroid"
     resolution: int = 1000
     """The number of points of an output's sampled set."""
     accuracy: float | None = None
-    """The maximum distance of an output's value from the exact integral."""
+    """The maximum distance of an output's value from the exact integral; None if the file sets none."""
     where: NodePath = field(default=(), compare=False)
 
     @property
@@ -198,7 +198,7 @@ class OutputBinding:
     """The joint that an output moves."""
 
     variable: str
-    """The output."""
+    """The name of the output."""
     joint: str
     """The joint, by name or role."""
     gain: float
@@ -237,7 +237,7 @@ class MessageBinding:
     variable: str
     """The output."""
     route: str
-    """The route."""
+    """The name of the route."""
     path: tuple[str, ...]
     """The path of the field in the message."""
     step: float
@@ -254,7 +254,7 @@ class ContextBinding:
     variable: str
     """The output."""
     key: str
-    """The key."""
+    """The name of the context key."""
     step: float
     """The change after which the key is set again."""
     where: NodePath = field(default=(), compare=False)
@@ -297,7 +297,7 @@ class TrackingSettings:
     hold: float = 2.0
     """The time that the joints stay after a loss [s]."""
     search: float = 8.0
-    """The time that they then swing to search [s]."""
+    """The time for which the joints then swing to search [s]."""
     period: float = 4.0
     """The period of the swing [s]."""
     stale: float = 1.0

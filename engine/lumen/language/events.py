@@ -16,13 +16,13 @@ class Event(NamedTuple):
     name: str
     """The name, with words separated by dots."""
     data: Any = None
-    """JSON data."""
+    """The event's data, as JSON data; None without data."""
     at: float = 0.0
     """The time on the exhibition's clock, the only clock that a step reads [s]."""
     sendid: str = ""
     """The id of the timer or delayed `send` that raised it (SCXML 5.10.1); empty for events from outside."""
     cause: Cause | None = None
-    """The cause if it is known; no expression reads it."""
+    """The cause; None if it is unknown. No expression reads it."""
 
 
 def _object(**fields: object) -> dict[str, object]:

@@ -25,7 +25,7 @@ class FunctionDefinition:
     parameters: Mapping[str, tuple[str, ...]]
     """The kinds of values that each argument accepts, such as `("text", "number")`, in the order of a call."""
     returns: tuple[str, ...]
-    """The kinds of values that it returns."""
+    """The kinds of values that the function returns."""
     description: Mapping[str, str]
     """The description by language, `""` for any language."""
     expression: str

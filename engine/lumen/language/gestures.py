@@ -19,9 +19,9 @@ class Gesture:
     """A movement of arms and head during a phrase: preparation, stroke, hold and retraction."""
 
     name: str
-    """Its name in the file."""
+    """The gesture's name in the file."""
     tags: tuple[str, ...]
-    """The tags of the texts that it accompanies."""
+    """The tags of the texts that the gesture accompanies."""
     tracks: Mapping[str, tuple[tuple[float, float], ...]]
     """For each joint rows (time [s], offset from its current angle [rad; hands 0..1]), from zero back to zero."""
     stroke: float
@@ -29,10 +29,10 @@ class Gesture:
     duration: float
     """The time at which the joints have returned [s]."""
     mirrored: bool = False
-    """True if it may also be performed with the other side, by `mirror`."""
+    """True if the gesture may also be performed with the other side, by `mirror`."""
     where: NodePath = field(default=(), compare=False)
     mirror: Mapping[str, tuple[str, float]] = field(default_factory=dict)
-    """For each of its joints the opposite one and the factor of the angle, as in `language/mirrors.py`."""
+    """For each joint of the gesture the opposite one and the factor of the angle, as in `language/mirrors.py`."""
 
 
 @dataclass(frozen=True, slots=True)

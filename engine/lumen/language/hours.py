@@ -12,13 +12,13 @@ class Schedule:
     """Moments by the wall clock: each of `times` on each of the days."""
 
     times: tuple[int, ...]
-    """Minutes since midnight."""
+    """The times of day, in minutes since midnight."""
     weekdays: tuple[int, ...] = ()
     """Days of the week, 0 being Monday."""
     dates: tuple[date, ...] = ()
     """Days of the calendar; if there are no `weekdays` either, every day."""
     text: str = field(default="", compare=False)
-    """The schedule as it is written."""
+    """The schedule as the author wrote it."""
 
     def holds(self, day: date) -> bool:
         """Return True if that is one of its days."""

@@ -20,18 +20,18 @@ class RobotSpec:
     """A robot of `robots:`, or the one of `robot:`, with its own settings or the common ones."""
 
     name: str
-    """Its name, which replaces {robot} in routing keys."""
+    """The robot's name, which replaces {robot} in routing keys."""
     model: str = ""
-    """Its body."""
+    """The name of the robot's body."""
     at: StartPose = StartPose()
-    """Its start in the hall."""
+    """The robot's start in the hall."""
     behavior: str = ""
-    """The behaviour that it runs."""
+    """The behaviour that the robot runs."""
     languages: tuple[str, ...] = ()
-    """The languages that it speaks."""
+    """The languages that the robot speaks."""
     story: str = ""
-    """The story that it is tried with."""
+    """The story that the robot is shown with by default."""
     stand: str = ""
-    """Its stand, which replaces {stand} in routing keys."""
+    """The robot's stand, which replaces {stand} in routing keys."""
     driver: str = ""
     """The project's own driver of the robot, `package:Class` or a name in drivers/; empty for none."""

@@ -10,22 +10,22 @@ class Passage:
     """One piece of knowledge: questions as visitors may ask them, and the answer to speak."""
 
     name: str
-    """The name of its file."""
+    """The name of the passage's file."""
     questions: Mapping[str, tuple[str, ...]]
     """The questions by language."""
     answer: Mapping[str, str]
     """The answer by language."""
     place: str = ""
-    """The place of lumen.yaml that it is about; empty if it is about none."""
+    """The place in lumen.yaml that the passage is about; empty if it is about none."""
     who: tuple[str, ...] = ()
     """The robots that may use the passage; empty for all."""
     as_of: date | None = None
-    """The day on which its author last checked it."""
+    """The day on which the author last checked the passage; None if unknown."""
     until: date | None = None
-    """The last day on which it is true."""
+    """The last day on which the passage is true; None without such a day."""
     tags: tuple[str, ...] = ()
     file: str = ""
-    """The path of its file."""
+    """The path of the passage's file."""
 
     def is_said_by(self, robot: str) -> bool:
         """Return True if that robot may use the passage in an answer."""

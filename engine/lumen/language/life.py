@@ -22,7 +22,7 @@ class Sway:
     """Joints that swing together around their current angles."""
 
     name: str
-    """Its name in the file."""
+    """The sway's name in the file."""
     period: float
     """The period [s]."""
     joints: Mapping[str, float]
@@ -97,7 +97,7 @@ class LifeStyle:
     """A style of idle movement."""
 
     name: str
-    """Its name."""
+    """The style's name."""
     sways: tuple[Sway, ...] = ()
     glances: Glances | None = None
     nods: Nods | None = None
@@ -108,7 +108,7 @@ class LifeStyle:
     asides: Asides | None = None
     settles: Settles | None = None
     naoqi: tuple[str, ...] = ()
-    """Values of `NAOQI_PARTS`."""
+    """The movements that NAOqi makes on a real NAO: values of `NAOQI_PARTS`."""
 
     @property
     def amplitudes(self) -> Mapping[str, float]:

@@ -71,18 +71,18 @@ class Transition:
     reenter: bool = False
     """True to exit and enter `source` even if all targets are inside it: SCXML's `type="external"`."""
     delay: float | Template | None = None
-    """The delay of `after` [s], or a template that gives it when the state is entered."""
+    """The delay of `after` [s], or a template that gives it when the state is entered; None for other transitions."""
     exact: bool = False
-    """The event's name must equal the descriptor: `onDone` of `talk` ignores `done.state.talk.ask`."""
+    """True if the event's name must equal the descriptor: `onDone` of `talk` ignores `done.state.talk.ask`."""
     where: NodePath = field(default=(), compare=False)
     schedule: Schedule | None = None
-    """The times of `at`."""
+    """The times of `at`; None for other transitions."""
     approve: Approval | None = None
-    """The approval of a person, for which the runtime delays the event; steps ignore it."""
+    """The approval of a person, for which the runtime delays the event; steps ignore it. None if none is needed."""
     offer: bool = False
-    """A language model may also raise its event."""
+    """True if a language model may also raise the transition's event."""
     hears: Hears | None = None
-    """The row of `hears`; its event is `heard`."""
+    """The row of `hears`, whose event is `heard`; None for other transitions."""
 
     @property
     def timed(self) -> bool:
@@ -125,7 +125,7 @@ class ForEach:
     """`for` of a state: its content runs once for each entry of a list."""
 
     each: Expression
-    """The list."""
+    """The expression of the list."""
     variable: str
     """The name of the entry in expressions."""
     key: str
@@ -171,7 +171,7 @@ class State:
     life: str = ""
     """The style of life while the state is active; empty for that of the surrounding state."""
     gestures: Literal["none", ""] = ""
-    """`none`: the robot speaks without gestures."""
+    """`none` if the robot speaks without gestures in the state; else empty."""
     buttons: tuple[Button, ...] = ()
     """Buttons for the operator, also while a state within is active."""
     for_each: ForEach | None = None
@@ -213,9 +213,9 @@ class MachineDefinition:
     renamed: Mapping[str, str] = field(default_factory=dict)
     hash: str = ""
     invoked: Mapping[str, "MachineDefinition"] = field(default_factory=dict, repr=False)
-    """The machines that its states invoke, by behaviour."""
+    """The machines that the behaviour's states invoke, by behaviour."""
     robots: tuple[str, ...] = ()
-    """The robots of the house, if it has several: events can be sent to them."""
+    """The robots of the house if there are several, since events can be sent to them."""
     shared: tuple[str, ...] = ()
     """The keys that these robots share, in the context under the key `shared`."""
     anyhow: frozenset[str] = frozenset()

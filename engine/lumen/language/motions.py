@@ -77,12 +77,12 @@ class MotionDefinition:
 
     name: str
     duration: float
-    """[s]"""
+    """The motion's duration [s]."""
     tracks: Mapping[str, tuple[Keyframe, ...]]
     cues: tuple[Cue, ...] = ()
     start: str = ""
-    """The posture in which it begins; empty if the file names none."""
+    """The posture in which the motion begins; empty if the file names none."""
     end: str = ""
-    """The posture to which it returns; empty if the file names none."""
+    """The posture to which the motion returns; empty if the file names none."""
     origin: Mapping[str, float] = field(default_factory=dict)
     """The angles of `start` [rad], for the joints of `tracks`."""

@@ -65,7 +65,7 @@ class Project:
     messages: Mapping[str, Mapping[str, object]] = field(default_factory=dict)
     """The JSON Schema of each message, by name."""
     languages: tuple[str, ...] = ("en",)
-    """The default language first."""
+    """The codes of the languages, the default language first."""
     timezone: str = ""
     """The time zone; empty for that of the machine."""
     story: str = ""

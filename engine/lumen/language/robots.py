@@ -81,7 +81,7 @@ class Body:
     """The angles of every joint, by posture [rad]."""
     coupled: tuple[CoupledLimit, ...]
     camera: Camera | None
-    """The camera; a body whose eyes have a camera must have one."""
+    """The camera; a body whose eyes have a camera must have one. None without a camera."""
     tactile: tuple[str, ...]
     shared: Mapping[str, str] = field(default_factory=dict)
     """For a joint, the one whose motor also moves it."""

@@ -102,16 +102,16 @@ class Route:
     event: str = ""
     """The event that a message becomes for the behaviour."""
     every: float | None = None
-    """The period of a sense [s]."""
+    """The period of a sense [s]; None if the route sets none."""
     size: Size | None = None
     """The size of a sense's images; None for that of the camera."""
     ttl: float | None = None
-    """The time to live [s]."""
+    """The time for which a message is valid [s]; None if the route sets none."""
     keep: int | None = None
-    """The maximum number of waiting messages."""
+    """The maximum number of waiting messages; None if the route sets none."""
     carried: Carried = Carried.TELEMETRY
     must_arrive: bool = False
-    """The sender keeps a message until the broker has it; the receiver returns it unless it was handled."""
+    """True if the sender keeps a message until the broker has it, and the receiver returns it unless it was handled."""
     latency: float = 0.15
     """The assumed age of a body without a `time` [s]."""
     most: float | None = None

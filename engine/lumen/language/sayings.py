@@ -12,9 +12,9 @@ class Saying:
     """A sentence of a visitor, and the row of `hears` that should match it."""
 
     behavior: str
-    """The behaviour."""
+    """The name of the behaviour."""
     state: str
-    """The active state, by its id or path."""
+    """The id or path of the active state."""
     row: str
     """The key of the row."""
     language: str

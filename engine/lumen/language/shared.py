@@ -15,11 +15,11 @@ class SharedKey:
     """A key of `shared:`."""
 
     owner: str
-    """The robot that alone can assign it."""
+    """The only robot that can assign the key."""
     type: str
-    """The JSON type of its values."""
+    """The JSON type of the key's values."""
     initial: Any
-    """Its value before the robot assigns one."""
+    """The key's value before the robot assigns one."""
 
 
 @dataclass(frozen=True, slots=True)

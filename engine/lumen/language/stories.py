@@ -41,7 +41,7 @@ class Speak:
 
 @dataclass(frozen=True, slots=True)
 class TouchSensor:
-    """`touch: SENSOR` or `release: SENSOR`."""
+    """`touch: SENSOR` or `release: SENSOR`: a tactile sensor is pressed or released."""
 
     sensor: str
     pressed: bool = True
@@ -181,7 +181,7 @@ class Story:
     behavior: str = ""
     language: str = ""
     clock: Schedule | None = None
-    """The time of day at its start."""
+    """The time of day at the story's start; None if it does not matter."""
     context: Mapping[str, Any] = field(default_factory=dict)
     robot: Mapping[str, str | float] = field(default_factory=dict)
     """How the robot performs a verb, by verb: `fails`, `hangs` or a duration [s]."""

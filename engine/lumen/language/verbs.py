@@ -65,11 +65,11 @@ class VerbField:
 
     name: str
     quantity: Quantity = Quantity.PLAIN
-    """The kind of value, which decides its unit."""
+    """The kind of the value, which decides the value's unit."""
     names: str = ""
-    """The kind of thing that its value names: `motion`, `posture`, `controller`, `language` or `place`; else empty."""
+    """The kind of thing that the value names: `motion`, `posture`, `controller`, `language` or `place`; else empty."""
     others: bool = False
-    """True if its value is the map of all keys that no other field has."""
+    """True if the value is the map of all keys that no other field has."""
 
 
 @dataclass(frozen=True, slots=True)

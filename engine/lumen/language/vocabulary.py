@@ -5,4 +5,4 @@ VOCABULARY = 1
 FIRST_VOCABULARY = 1
 """The version of files that do not name one."""
 VOCABULARY_KEY = "lumen"
-"""The key of lumen.yaml that names it."""
+"""The key of lumen.yaml that names the vocabulary."""

@@ -264,7 +264,7 @@ class _Builder:
         )
 
     def point(self, spec: Sequence[float]) -> tuple[float, float, float]:
-        """Return a point of the file in [m]."""
+        """Return a point of the file with its coordinates in [m]."""
         x, y, z = (c * self.length for c in spec)
         return x, y, z
 

@@ -224,7 +224,7 @@ def assemble(found: ProjectDraft, root: str) -> Project:
 
 
 def _main(found: ProjectDraft, content: bytes, robot: str) -> BuiltFile[Settings] | None:
-    """Return lumen.yaml as read for that robot."""
+    """Return the content of lumen.yaml for that robot; None if the file can't be read."""
     build = partial(build_settings, robot=robot)
     return _read(found, MAIN_FILE, content, MAIN_KIND, lambda data, report, name: build(data, report), robot)
 
@@ -356,7 +356,7 @@ def _read(
     around: object = None,
     verbs: OwnVerbs = NO_VERBS,
 ) -> BuiltFile[T] | None:
-    """Return the content of one document; None if it can't be read at all."""
+    """Return the content of one document, and keep its findings; None if the document can't be read at all."""
     if isinstance(content, Unreadable):
         hint = "make it a readable file, or delete it"
         found.say(UNREADABLE_FILE, file, f"this can't be read: {content.decode('utf-8', 'replace')}", hint)

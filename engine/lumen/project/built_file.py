@@ -18,7 +18,7 @@ B = TypeVar("B", covariant=True)
 
 
 class Build(Protocol[B]):
-    """Builds a value from a document's checked data and reports what is wrong with the data."""
+    """Builds a value from a document's checked data and reports the data's faults; None if no value can be built."""
 
     def __call__(self, data: Any, report: DocumentReport, *, name: str) -> B | None: ...
 

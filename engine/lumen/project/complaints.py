@@ -35,7 +35,7 @@ class Complaint:
     doomed: NodePath | None
     """The node that must be left out because of the fault; None if all can stay."""
     key: bool = False
-    """Show the finding at the key of the node instead of its value."""
+    """True if the finding is shown at the key of the node instead of its value."""
     missing: str = ""
     """The key that is absent."""
     suggestion: str = ""

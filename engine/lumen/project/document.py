@@ -33,7 +33,7 @@ class Document:
     file: str
     data: Any
     spans: Mapping[NodePath, NodeSpan] = field(default_factory=dict, repr=False, compare=False)
-    """The place of each node, by its path."""
+    """The place of each node by the node's path."""
     text: str = field(default="", repr=False, compare=False)
     dropped: frozenset[str] = field(default=frozenset(), repr=False, compare=False)
     """The words under duplicate keys, which are not read."""

@@ -65,11 +65,11 @@ class Expressions:
         self.findings = RememberedFindings(("expressions", report.document.file), names)
 
     def expression(self, source: str, where: NodePath) -> Expression | None:
-        """Return the expression; if it can't be read, report why and return None."""
+        """Return the compiled expression; if `source` can't be read, report why and return None."""
         return self._read(source, where, localized=True)
 
     def whole(self, source: str, where: NodePath) -> Expression | None:
-        """Return the expression like `expression`, but with lists in all languages instead of the current one."""
+        """Return the expression as `expression` does, but with lists in all languages instead of the current one."""
         return self._read(source, where, localized=False)
 
     def _read(self, source: str, where: NodePath, *, localized: bool) -> Expression | None:

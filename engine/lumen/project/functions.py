@@ -47,7 +47,7 @@ class FunctionFile:
     """The description by language; under an empty key if it has no language."""
     expression: str
     tree: ExpressionNode | None
-    """The parsed expression; None if its syntax is faulty."""
+    """The parsed expression; None if the expression has a syntax error."""
     examples: tuple[FunctionExample, ...]
 
 

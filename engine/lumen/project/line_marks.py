@@ -16,7 +16,7 @@ class LineMarks(NamedTuple):
     """The unbalanced quotes and brackets of a line; columns count from 0."""
 
     quote: Mark | None
-    """A quote that opens and is not closed."""
+    """A quote that opens and is not closed; None if there is none."""
     ended: tuple[Mark, Mark] | None
     """The opening and closing quote of a text that is followed by anything but a comma, a colon or a bracket."""
     open: tuple[Mark, ...]

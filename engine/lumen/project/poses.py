@@ -23,7 +23,7 @@ SHARED_DRIVE = Code("shared-drive", "motions", ERROR, "two joints with one motor
 
 
 PlacedAngles = dict[str, tuple[float, NodePath]]
-"""For every joint its angle [rad; a hand 0..1] and its place in the file."""
+"""By joint, the angle [rad; a hand 0..1] and its place in the file."""
 
 Handles = dict[str, tuple[tuple[float, float], tuple[float, float]]]
 

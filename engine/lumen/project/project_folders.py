@@ -23,7 +23,7 @@ class ProjectFolder(NamedTuple):
 
     path: str
     kind: str
-    """The kind of its YAML or JSON files: `schemas/KIND.schema.json` describes them."""
+    """The kind of the YAML or JSON files in the folder; `schemas/KIND.schema.json` describes them."""
     endings: tuple[str, ...] = (".yaml", ".yml")
     """The endings of files that belong to the project; lint reports those in .yml, which nothing reads."""
 

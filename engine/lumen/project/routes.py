@@ -15,7 +15,7 @@ DEFAULT_LATENCY = 0.15
 PERIODS: Mapping[str, float] = {"s": 1.0, "min": 60.0}
 """The units of time of `most` of a route [s]."""
 _USUAL = {COMMAND: Carried.COMMAND, STOP: Carried.STOP}
-"""How a route is carried if its name implies it."""
+"""The way in which a route is carried if its name implies it."""
 
 
 def build_routes(
@@ -55,7 +55,10 @@ def _size(data: Mapping[str, Any]) -> Size | None:
 
 
 def _rate(data: Mapping[str, Any]) -> float | None:
-    """Return the rate of `50/s` or `30/min` [1/s]; the schema has checked the form."""
+    """Return the rate in `data`, such as `50/s` or `30/min`, in [1/s]; None if there is no rate.
+
+    The schema checked the form.
+    """
     number, _, unit = data.get("most", "").partition("/")
     return float(number) / PERIODS[unit] if number else None
 

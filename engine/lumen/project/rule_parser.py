@@ -47,7 +47,7 @@ class RuleText(NamedTuple):
     antecedent: Antecedent
     consequents: tuple[Proposition, ...]
     weight: float
-    """From 0 to 1; 1 if the rule names none."""
+    """The rule's weight from 0 to 1; 1 if the rule names none."""
     mentions: tuple[Mention, ...]
 
 

@@ -24,7 +24,7 @@ class Slip(NamedTuple):
     meant: Mapping[int, str]
     """The corrected lines, by index from 0."""
     only_whole: bool = False
-    """Report it only if the correction makes the whole file valid YAML, not merely more of it."""
+    """True if the slip counts only if its correction makes the whole file valid YAML, not merely more of the file."""
 
 
 NOT_CLOSED = (

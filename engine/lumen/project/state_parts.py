@@ -24,7 +24,7 @@ class ReadButton(NamedTuple):
 
     button: Button
     actions: Any = None
-    """The data of its actions; None if it only sends an event, which the behaviour handles elsewhere."""
+    """The data of the button's actions; None if it only sends an event that is handled elsewhere."""
 
 
 def read_buttons(data: Any, where: NodePath, state: str) -> tuple[ReadButton, ...]:

@@ -23,7 +23,7 @@ class _Uses(NamedTuple):
     published: Mapping[str, NodePath]
     """The first place of each route that it publishes to."""
     made: frozenset[str]
-    """The events that it declares, raises or sends, and those of its buttons."""
+    """The events that the behaviour declares, raises or sends, and those of its buttons."""
 
 
 def used_routes(

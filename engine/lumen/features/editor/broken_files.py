@@ -21,7 +21,7 @@ class BrokenFile(NamedTuple):
     """A file that is invalid YAML."""
 
     diagnostics: tuple[Diagnostic, ...]
-    """The findings about its invalid YAML."""
+    """The findings about the file's invalid YAML."""
     readable: bytes
     """A readable replacement: the repaired text, or an earlier version of the file."""
     mended: MendedText | None

@@ -17,9 +17,9 @@ class Symbol(NamedTuple):
     name: str
     kind: NameKind
     place: Place
-    """The place of its name."""
+    """The place of the thing's name."""
     whole: Place
-    """The place of its whole definition."""
+    """The place of the thing's whole definition."""
     children: tuple["Symbol", ...] = ()
 
 

@@ -22,13 +22,13 @@ class AgentMemory:
     before: str = ""
     """The hash of the files that ran before the present ones."""
     failed: dict[str, list[Any]] = field(default_factory=dict)
-    """For each failed bundle: the order at the time, the state, and the reason."""
+    """For each failed bundle: the order's term and version, the robot's state, and the reason."""
     done: list[int] = field(default_factory=list)
     """The term and version of the last order that was fulfilled; empty if none was."""
     trying: str = ""
     """The bundle that is on probation; empty if none is."""
     tries: int = 0
-    """The number of times that this process ended during that probation."""
+    """The number of times that the exhibition's process began again during that probation."""
     writing: str = ""
     """The hash of files that are being written into the project's folder."""
     now: dict[str, float] = field(default_factory=dict)

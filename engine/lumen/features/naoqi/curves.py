@@ -16,7 +16,7 @@ MOTION_CYCLE = 0.02
 MAX_CURVE_ERROR = 1e-3
 """The maximum deviation of a joint from a minimum-jerk track [rad]."""
 MIN_PIECE_DURATION = 2 * MOTION_CYCLE
-"""The shortest piece [s]."""
+"""The minimum duration of a piece [s]."""
 BEZIER_HANDLE = 3
 """NAOqi's number for an explicit handle."""
 
@@ -25,12 +25,12 @@ class CubicPiece(NamedTuple):
     """A cubic Bezier curve of the given duration [s], whose points have the angles `a0` to `a3` [rad]."""
 
     start: float
-    """The time of its beginning [s]."""
+    """The time of the curve's beginning [s]."""
     duration: float
     t1: float
-    """The time of its first inner point from its beginning [s]."""
+    """The time of the first inner point from the curve's beginning [s]."""
     t2: float
-    """The time of its second inner point from its beginning [s]."""
+    """The time of the second inner point from the curve's beginning [s]."""
     a0: float
     a1: float
     a2: float

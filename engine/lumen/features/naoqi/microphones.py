@@ -15,7 +15,7 @@ AUDIO_DEVICE, MICROPHONE_SERVICE = "ALAudioDevice", "LumenMicrophones"
 FRONT_MICROPHONE, INTERLEAVED = 3, 0
 """The microphone that points at the visitor: ALAudioDevice offers a single one at 16 kHz, all four only at 48 kHz."""
 RECORDING_GRACE = 3.0
-"""The time beyond its duration in which a recording must arrive [s]."""
+"""The time beyond the recording's duration in which its sound must arrive [s]."""
 
 
 class Microphones:

@@ -24,7 +24,7 @@ FULL = "BatteryFullChargedFlagChanged"
 BATTERY_LOW, BATTERY_RECOVERED = 20, 25
 """The charges [%] at which the robot raises `battery.low`, and may raise it again."""
 MOTOR_HOT, MOTOR_COOLED = 75.0, 70.0
-"""The temperatures [degrees Celsius] at which it raises `motors.hot`, and may raise it again."""
+"""The temperatures [degrees Celsius] at which a motor raises `motors.hot`, and may raise it again."""
 
 EVENT_SETTLE_TIME = 0.3
 """A sensor's reading overrides an event if it is newer by more than this [s]."""

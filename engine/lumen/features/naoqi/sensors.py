@@ -96,7 +96,10 @@ class NaoqiSensors:
         return Joints(now, tuple(self._names), angles, stiffness, *felt)
 
     def sonar(self) -> Sonar:
-        """Return the distances left and right [m]."""
+        """Return the distances left and right [m].
+
+        Raises SenseError if the robot has no sonars or they have no values.
+        """
         if not self._session.has("ALSonar"):
             raise SenseError("this robot has no ALSonar")
         now = self._clock()
@@ -113,7 +116,10 @@ class NaoqiSensors:
         return Tactile(now, self._body.tactile, tuple(int(pressed.get(name, False)) for name in self._body.tactile))
 
     def battery(self) -> Battery:
-        """Return the battery's charge, and whether it is plugged in and charging."""
+        """Return the battery's charge [%], and whether it is plugged in and charging.
+
+        Raises SenseError without a charge.
+        """
         now = self._clock()
         charge, plugged, charging = self._memory([CHARGE, PLUGGED, CHARGING])
         if not isinstance(charge, int | float):

@@ -31,7 +31,7 @@ class DriveGeometry(NamedTuple):
     angles: NDArray[np.intp]
     """The indexes of the wheels' joints in MuJoCo's `qpos`, left first."""
     motors: NDArray[np.intp]
-    """The wheels' actuators."""
+    """The indices of the wheels' actuators in MuJoCo's model."""
     signs: NDArray[np.float64]
     """1 for a wheel that rolls ahead with a positive angle, else -1."""
     radius: float

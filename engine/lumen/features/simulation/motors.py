@@ -102,7 +102,7 @@ class Motors:
                 raise BadCommandError(f"`{name}` cannot move to {angle}")
 
     def inside(self, name: str, angle: float) -> float:
-        """Return the nearest angle inside that joint's limits."""
+        """Return the nearest angle [rad; hands 0..1] inside that joint's limits."""
         low, high = self._limits[name]
         return min(max(angle, low), high)
 

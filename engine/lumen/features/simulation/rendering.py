@@ -57,7 +57,7 @@ class RenderQuality:
     samples: int = 0
     """The number of samples per pixel against aliasing; 0 for none."""
     contact: bool = False
-    """Draw dark spots under the feet."""
+    """True to draw dark spots under the feet."""
     sides: tuple[int, int] | None = None
     """The number of faces of round shapes, around and from top to bottom; None for that of the model."""
 
@@ -71,19 +71,19 @@ class RenderState:
     """A copy of everything that a picture of this moment depends on, so that it can be drawn later."""
 
     positions: NDArray[np.float64]
-    """MuJoCo's `qpos`."""
+    """The positions of all joints, MuJoCo's `qpos` [m, rad]."""
     visitor_place: NDArray[np.float64]
-    """The position of the visitor's body."""
+    """The position of the visitor's body [m]."""
     visitor_turn: NDArray[np.float64]
     """The rotation of the visitor's body, a quaternion."""
     colours: NDArray[np.float32]
-    """The materials' colours."""
+    """The materials' colours: red, green, blue and opacity from 0 to 1."""
     sizes: NDArray[np.float64]
-    """The geoms' sizes."""
+    """The geoms' sizes [m]."""
     places: NDArray[np.float64]
-    """The geoms' positions in their bodies."""
+    """The geoms' positions in their bodies [m]."""
     bounds: NDArray[np.float64]
-    """The radii of the geoms' bounding spheres."""
+    """The radii of the geoms' bounding spheres [m]."""
 
     @classmethod
     def of(cls, model: mujoco.MjModel, data: mujoco.MjData) -> "RenderState":

@@ -26,12 +26,12 @@ class HallRobot(NamedTuple):
 
     body: Body
     models: Path
-    """The folder of its MJCF."""
+    """The folder of the robot's MJCF."""
     at: StartPose = StartPose()
-    """Its pose in the hall at the start."""
+    """The robot's pose in the hall at the start."""
     imperfections: Imperfections = Imperfections()
     stage: Stage | None = None
-    """The area in which it may move; None for no bounds."""
+    """The area in which the robot may move; None for no bounds."""
 
 
 class SharedHall:

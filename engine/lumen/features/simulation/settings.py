@@ -8,19 +8,19 @@ class Imperfections:
     """The imperfections of a simulated robot."""
 
     noise: bool = True
-    """Sensors have noise."""
+    """True if sensors have noise."""
     quantisation: bool = True
-    """Encoders give whole steps."""
+    """True if encoders give whole steps."""
     gyro_bias: bool = True
-    """The gyrometer measures a turn of a robot that does not turn."""
+    """True if the gyrometer measures a turn of a robot that does not turn."""
     latency: bool = True
-    """A command acts one control period later."""
+    """True if a command acts one control period later."""
     backlash: bool = True
-    """Gears have play."""
+    """True if gears have play."""
     torque_speed: bool = True
-    """The torque of a motor falls with its speed."""
+    """True if the torque of a motor falls with its speed."""
     supply: bool = True
-    """The torque of a motor falls with the battery's voltage."""
+    """True if the torque of a motor falls with the battery's voltage."""
 
 
 IMPERFECTIONS = tuple(field.name for field in fields(Imperfections))

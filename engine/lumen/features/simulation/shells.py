@@ -72,11 +72,11 @@ class ShellPanel:
     span: tuple[float, float]
     """The shares of the loft's length at which it begins and ends."""
     arc: tuple[float, float]
-    """The angles at which it begins and ends [deg]."""
+    """The angles at which the slab begins and ends [deg]."""
     rise: float = 1.0
-    """Its height above the skin [mm]."""
+    """The slab's height above the skin [mm]."""
     sink: float = 1.5
-    """Its depth below the skin [mm]."""
+    """The slab's depth below the skin [mm]."""
 
     def mesh(self) -> tuple[Vertices, NDArray[np.int64]]:
         """Return the vertices [mm] and triangles of a closed slab: Shape (n, 3) each."""
@@ -100,9 +100,9 @@ class Ring:
     """A torus around z of radius 1000 (scaled by the MJCF)."""
 
     thick: float
-    """Half its thickness in the direction of the radius."""
+    """Half the ring's thickness in the direction of the radius [mm]."""
     flat: float
-    """Half its thickness along z."""
+    """Half the ring's thickness along z [mm]."""
 
     def mesh(self) -> tuple[Vertices, NDArray[np.int64]]:
         """Return the vertices and triangles of the torus: Shape (n, 3) each."""

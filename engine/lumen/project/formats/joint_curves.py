@@ -19,7 +19,7 @@ class CurvePoint(NamedTuple):
     """The joint's angle [rad]; the opening of a hand, 0 to 1."""
     place: Place
     straight: bool = False
-    """The curve to this point is a straight line."""
+    """True if the curve to this point is a straight line."""
     handle_in: BezierHandle = (0.0, 0.0)
     """A handle (dt [s], da [rad]) as in `lumen.language.motions.Keyframe`; if dt is 0, Lumen chooses the handle."""
     handle_out: BezierHandle = (0.0, 0.0)
@@ -37,7 +37,7 @@ class MotionFile(NamedTuple):
 
 
 JointCurves = Mapping[str, list[CurvePoint]]
-"""For each joint its points, in the order of the file."""
+"""The points of each joint, in the order of the file."""
 
 
 def number(text: str) -> float | None:

@@ -16,9 +16,9 @@ class ConditionFault(NamedTuple):
     """An error in a condition."""
 
     offset: int
-    """The index of its first character."""
+    """The index of the fault's first character."""
     length: int
-    """The number of its characters."""
+    """The number of the fault's characters."""
     message: str
     hint: str
 

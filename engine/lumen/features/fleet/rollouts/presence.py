@@ -17,7 +17,7 @@ STATES = (PROVED, PROBATION, WAITING, FETCHING, CHECKING, REFUSED, ROLLED_BACK, 
 
 SAME, DIFFER = "same", "differ"
 TRIED = (SAME, DIFFER, REFUSED)
-"""The results of trying a bundle: its last visits came out the same, some differ, or the bundle is refused."""
+"""The results of trying a bundle: the last visits came out the same, some differ, or the bundle is refused."""
 
 HOURS = "hours"
 """The measure that is always counted: how long a bundle has run [h]."""

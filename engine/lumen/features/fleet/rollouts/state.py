@@ -30,7 +30,7 @@ class Rollout:
     reason: str = ""
     """The reason for `state`, which may be empty."""
     begun: float = 0.0
-    """The time of its beginning [s since 1970]."""
+    """The time of the rollout's beginning [s since 1970]."""
     version: int = 0
     """The version of the last order before the rollout or, after trials, before its first step."""
     prior: Mapping[str, str] = field(default_factory=dict)

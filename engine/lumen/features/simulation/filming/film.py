@@ -52,9 +52,9 @@ class Picture(NamedTuple):
     camera: str | tuple[HallPoint, float, float, float]
     """The name of a camera of the model, or a free camera's target, azimuth [deg], elevation [deg] and distance [m]."""
     said: str
-    """The robot's subtitle."""
+    """The text of the robot's subtitle; empty for none."""
     heard: str
-    """The visitor's subtitle."""
+    """The text of the visitor's subtitle; empty for none."""
     title: float
     """The title's opacity, from 0 to 1."""
 

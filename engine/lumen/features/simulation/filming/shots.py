@@ -35,13 +35,13 @@ class Subjects(NamedTuple):
     """The subjects that can be filmed."""
 
     head: HallPoint
-    """The robot's head."""
+    """The position of the robot's head in the hall [m]."""
     torso: HallPoint
-    """The robot's torso."""
+    """The position of the robot's torso in the hall [m]."""
     heading: float
     """The direction that the robot faces [rad]."""
     visitor: HallPoint | None
-    """The visitor's face, None without a visitor."""
+    """The position of the visitor's face in the hall [m]; None without a visitor."""
 
 
 class CameraPlace(NamedTuple):

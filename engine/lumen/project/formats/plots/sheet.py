@@ -24,7 +24,7 @@ class PlotLine:
     """The number of the line style, counted modulo the styles that there are; they differ in dashes and shade."""
     filled: bool = False
     points: bool = False
-    """Draw a dot at each point and no line."""
+    """True to draw a dot at each point and no line."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,12 +32,12 @@ class PlotMark:
     """A thin line across the panel."""
 
     at: float
-    """Its coordinate on the axis that it crosses."""
+    """The coordinate of the mark on the axis that it crosses."""
     label: str = ""
     level: bool = False
-    """Draw the line horizontally instead of vertically."""
+    """True for a horizontal line, False for a vertical one."""
     strong: bool = False
-    """Draw the line heavier, for a result."""
+    """True for a heavier line, which marks a result."""
 
 
 @dataclass(frozen=True, slots=True)
