@@ -44,7 +44,7 @@ class Magnifier:
         self._own = _own_inputs(controller)
 
     def answer(self, inputs: Mapping[str, float], previous: Mapping[str, float]) -> dict[str, float]:
-        """Return the outputs for an image; raises the same errors as `evaluate`.
+        """Return the outputs for an image at the best magnification; raises the same errors as `evaluate`.
 
         Outputs with `lock_previous` keep their value in `previous` if no rule fires.
         """

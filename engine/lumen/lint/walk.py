@@ -28,10 +28,11 @@ from lumen.project.memoization import Same, memoize
 
 
 class ActionSite(NamedTuple):
-    """An action in its state; `transition` is the one that it belongs to, None for `entry`, `do` and `exit`."""
+    """An action in its state."""
 
     state: State
     transition: Transition | None
+    """The transition of the action; None for `entry`, `do` and `exit`."""
     step: PlacedAction
 
 

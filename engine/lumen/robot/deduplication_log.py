@@ -22,14 +22,14 @@ _log = logging.getLogger(__name__)
 
 
 class BegunCommand(NamedTuple):
-    """A command that was begun `at` [s since 1970], by the `id` that its `sender` gave it.
-
-    `sender` is None in a file of an older version, which did not record it.
-    """
+    """A command that was begun."""
 
     at: float
+    """When the command was begun [s since 1970]."""
     id: str
+    """The id that its sender gave the command."""
     sender: str | None = None
+    """The name of its sender; None in a file of an older version, which did not record it."""
 
 
 class DeduplicationLog:

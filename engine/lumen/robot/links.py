@@ -19,26 +19,27 @@ FLOOR = "hall"
 
 
 class LinkFrame(NamedTuple):
-    """A link in the frame of its parent: position [m], quaternion (w, x, y, z)."""
+    """A link in the frame of its parent."""
 
     name: str
     parent: str
     position: "NDArray[np.float64]"
+    """The position [m]."""
     rotation: "NDArray[np.float64]"
+    """The rotation, a quaternion (w, x, y, z)."""
 
 
 class LinkShape(NamedTuple):
-    """The visible shape of a link, in its frame: a box, ellipsoid, cylinder or capsule of half sizes [m], or triangles.
-
-    Of a capsule and a cylinder `size` is the radius and half the length along z; `colour` is red, green, blue, alpha.
-    """
+    """The visible shape of a link, in its frame: a box, ellipsoid, cylinder or capsule, or triangles."""
 
     link: str
     kind: str
     position: "NDArray[np.float64]"
     rotation: "NDArray[np.float64]"
     size: "NDArray[np.float64]"
+    """The half sizes [m]; of a capsule and a cylinder the radius and half the length along z."""
     colour: "NDArray[np.float64]"
+    """Red, green, blue and alpha."""
     vertices: "NDArray[np.float64]"
     faces: "NDArray[np.int32]"
 

@@ -175,7 +175,7 @@ class RobotServer:
             _log.warning("a message of the robot on `%s` was not sent: %s", route, error)
 
     def _wanted(self, route: Route) -> bool:
-        """Return whether a reading is needed: an image, or a route `of` a sense, is not without subscribers."""
+        """Return False for a reading that nobody needs: an image, or a route `of` a sense, without subscribers."""
         if not route.of and route.sense != Sense.IMAGE:
             return True
         return self._listeners is None or self._listeners.heard(route.key_for(self._project.robot))

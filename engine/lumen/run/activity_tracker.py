@@ -40,10 +40,11 @@ class UnderWay(NamedTuple):
 
 
 class Spoken(NamedTuple):
-    """A visitor's words, at `at` [s]."""
+    """A visitor's words."""
 
     text: str
     at: float
+    """When the words were said [s]."""
 
 
 class ActivityTracker(Observer):

@@ -98,7 +98,7 @@ class Exhibition:
 
     @property
     def over(self) -> bool:
-        """Whether its story has ended, or the run was interrupted."""
+        """Whether the story has ended, or the run was interrupted."""
         return self.node.over
 
     def start(self) -> None:

@@ -16,12 +16,12 @@ class Living(Protocol):
 
     @property
     def now(self) -> float:
-        """Its time [s]."""
+        """The time of the robot, or of all robots [s]."""
         ...
 
     @property
     def over(self) -> bool:
-        """Whether it has ended."""
+        """Whether the robot, or each of the robots, has ended."""
         ...
 
     def nap(self, most: float) -> None:

@@ -62,7 +62,7 @@ class PaceWatch:
         return ""
 
     def summary(self) -> list[str]:
-        """Return a line about the slowest pace, if it was below SLOW."""
+        """Return a line about the slowest pace; empty if it was not below SLOW."""
         return [f"at its slowest, the exhibition ran at {self.worst:.2f} × real time"] if self.worst < SLOW else []
 
 
@@ -142,12 +142,12 @@ class Node:
 
     @property
     def interrupted(self) -> bool:
-        """Whether it was interrupted."""
+        """Whether the process was interrupted."""
         return self._interrupts > 0
 
     @property
     def leaving(self) -> bool:
-        """Whether it was ended so that the next run continues from here."""
+        """Whether the process was ended so that the next run continues from here."""
         return self._leaving
 
     def interrupt(self, times: int = 1, *, leave: bool = False) -> None:

@@ -61,7 +61,7 @@ def reach_exhibition(project: str | None, bus: str | None, robot: str = "") -> R
 
 
 def robots_meant(project: str | None) -> list[str]:
-    """Return the robots of `robots:` that run on this machine, or all if none does; nothing for one `robot:`."""
+    """Return the robots of `robots:` that run on this machine, or all if none does; empty with one `robot:`."""
     root = running_project(project)
     robots = robots_of(root, None)
     return [name for name in robots if _running(root, name)] or list(robots)

@@ -70,7 +70,7 @@ class Runtime:
 
     @property
     def begun(self) -> bool:
-        """Whether it was started."""
+        """Whether the behaviour was started."""
         return self._snapshot is not None
 
     @property

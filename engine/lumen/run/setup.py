@@ -35,7 +35,7 @@ class Setup:
     blind: str = ""
     """Why its camera has no images, with advice; empty if it has images."""
     remote: bool = False
-    """Whether its server is in another process."""
+    """Whether the robot's server is in another process."""
     tracking: TrackingService | None = None
     """Lets controllers follow sightings; None if the exhibition does that itself."""
 

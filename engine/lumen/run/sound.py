@@ -17,9 +17,10 @@ MAX_DURATION = 120.0
 
 
 class Sound(NamedTuple):
-    """Samples of 16 bits, little-endian, one channel, at `rate` [1/s]."""
+    """Samples of 16 bits, little-endian, one channel."""
 
     rate: int
+    """The number of samples per second [1/s]."""
     samples: bytes
 
     @property

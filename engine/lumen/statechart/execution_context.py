@@ -30,7 +30,7 @@ class Beginning(NamedTuple):
     invokes: tuple[CompiledInvoke, ...]
     """The behaviours to invoke."""
     do: bool
-    """Whether its `do` begins."""
+    """Whether the node's `do` begins."""
     halted: Halted | None = None
     """The stored position of that `do`, if a history state restores the state."""
 

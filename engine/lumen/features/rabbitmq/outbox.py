@@ -38,7 +38,7 @@ class OutgoingMessage(NamedTuple):
     keep: int = 0
     """The number of the key's newest messages that may wait; 0 for any number."""
     must: bool = False
-    """Whether it is sent until the broker confirms it; a receiver recognises a repetition by the id in `origin`."""
+    """Whether the message is sent until the broker confirms it; a receiver recognises a repetition by its id."""
     origin: MessageOrigin = UNKNOWN_ORIGIN
     headers: Mapping[str, str | int] | None = None
     """Headers that are sent with it."""

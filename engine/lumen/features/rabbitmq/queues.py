@@ -74,7 +74,7 @@ class Queue:
 
     @property
     def quorum(self) -> bool:
-        """Whether it is a quorum queue."""
+        """Whether this is a quorum queue."""
         return self.arguments.get("x-queue-type") == "quorum"
 
     def declare(self, channel: AskedChannel) -> None:

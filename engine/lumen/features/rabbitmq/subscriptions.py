@@ -23,7 +23,7 @@ class Subscription:
     """Distinguishes subscriptions of the same pattern."""
     exchange: str = EXCHANGE
     active: bool = True
-    """Whether it has not been removed."""
+    """Whether the subscription has not been removed."""
     queue: str = ""
     """The name of its queue on the broker."""
     tag: str = ""
@@ -45,7 +45,7 @@ class Subscription:
 
     @property
     def must_arrive(self) -> bool:
-        """Whether its messages must arrive, by its route."""
+        """Whether the subscription's messages must arrive, by its route."""
         return self.route is not None and self.route.must_arrive
 
 
@@ -65,7 +65,7 @@ class Delivery(NamedTuple):
     at: float = 0.0
     """The time of its arrival [s, monotonic]."""
     spent: bool = False
-    """Whether it is only to be acknowledged, in its turn."""
+    """Whether the delivery is only to be acknowledged, in its turn."""
 
 
 class Subscriptions:

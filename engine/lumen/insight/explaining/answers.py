@@ -45,10 +45,11 @@ class WhyAnswer:
 
 @dataclass(frozen=True, slots=True)
 class WhyNotAnswer:
-    """Why something did not happen by `at` [s since 1970, in UTC]; the reason nearest to success comes first."""
+    """Why something did not happen; the reason nearest to success comes first."""
 
     what: str
     at: float
+    """The time until which it did not happen [s since 1970, in UTC]."""
     reasons: tuple[Reason, ...]
 
     def to_json(self) -> dict[str, Any]:

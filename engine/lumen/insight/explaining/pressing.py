@@ -30,7 +30,7 @@ class ShownButton(NamedTuple):
     key: str
     """The button's key; empty if another button that is shown has the same one."""
     enabled: bool
-    """Whether its event would be taken now."""
+    """Whether the button's event would be taken now."""
     reason: str
     """Why the event would not be taken; empty if it would."""
 

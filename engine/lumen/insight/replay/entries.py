@@ -57,7 +57,7 @@ class JournalJump(NamedTuple):
     """A point at which the behaviour continues from a snapshot without a step."""
 
     position: int
-    """Its position in the journal."""
+    """The entry's position in the journal."""
     kind: JumpKind
     """The reason."""
     at: float

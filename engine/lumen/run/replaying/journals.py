@@ -63,9 +63,10 @@ DAYS = {"today": 0, "yesterday": 1}
 
 
 class ChosenJournal(NamedTuple):
-    """Files of one journal, in order; `root` is their project's folder."""
+    """Files of one journal, in order."""
 
     root: Path
+    """The folder of their project."""
     files: tuple[Path, ...]
 
     def entries(self) -> Iterator[RecordedEntry]:

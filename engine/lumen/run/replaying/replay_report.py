@@ -29,7 +29,7 @@ class ReplayDifference(NamedTuple):
     """The file and line of the new text; empty if unknown."""
 
     def to_json(self) -> dict[str, Any]:
-        """Return it as JSON data."""
+        """Return the difference as JSON data."""
         place = {"place": self.place} if self.place else {}
         return {"visit": self.visit, "at": iso_time(self.at), "was": self.was, "is": self.now, "how": self.how, **place}
 
@@ -54,7 +54,7 @@ class ReplayReport:
     """The numbers of entries that could not be compared, by the reason."""
 
     def to_json(self) -> dict[str, Any]:
-        """Return it as `lumen replay --format json` prints it."""
+        """Return the report as `lumen replay --format json` prints it."""
         return {
             "visits": self.visits,
             "steps": self.steps,

@@ -144,7 +144,7 @@ def _draft(acts: Sequence[TimedAction], visit: RecordedVisit, *, clocked: bool) 
 
 
 def _approved(project: Project, visit: RecordedVisit) -> tuple[StoryStep, ...]:
-    """Return a step that turns approval off: recorded events had GO already, and must not wait again."""
+    """Return a step that turns approval off: recorded events had GO already; empty without marked transitions."""
     assert visit.home is not None
     marked = marked_transitions(project.behaviors[visit.home.behavior])
     return (StoryStep(SetAutonomy("alone")),) if marked else ()

@@ -25,13 +25,12 @@ from lumen.project.project_folders import MODELS
 
 @dataclass(frozen=True)
 class WorkKit:
-    """The files of one or more `bundles`, by name, and the `meshes`, which the simulation opens itself.
-
-    The paths of both are relative to the project's root.
-    """
+    """The files that tasks need; their paths are relative to the project's root."""
 
     bundles: Mapping[str, Mapping[str, bytes]]
+    """The files of each bundle, by its name."""
     meshes: Mapping[str, bytes]
+    """The files of the models, which the simulation opens itself."""
 
     def packed(self) -> bytes:
         """Return the kit as bytes, which are the same for the same files anywhere."""
