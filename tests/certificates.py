@@ -9,7 +9,7 @@ KEY = ["-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:prime256v1", "-nodes"]
 
 
 def certify(folder: Path, name: str, days: int = 2) -> Path:
-    """Write `ca.pem`, `server.pem` and `server.key` for a host (`IP:…` or `DNS:…`) into a folder, and return it."""
+    """Write `ca.pem`, `server.pem` and `server.key` for a host (`IP:…` or `DNS:…`) into a folder; return the folder."""
     good = ["-days", str(days)]
     _openssl(folder, "req", "-x509", *KEY, *good, "-keyout", "ca.key", "-out", "ca.pem", "-subj", "/CN=Hall")
     _openssl(folder, "req", *KEY, "-keyout", "server.key", "-out", "server.csr", "-subj", "/CN=broker")

@@ -3,8 +3,8 @@
 `make test` proves the product and guards each commit. It runs everything deterministic (virtual time, no process, no
 network, no physics), and a few real tests marked `once`: one broker, one browser, one physics. A test is in the
 rest if it uses one of `REAL`, which `tests/marking.py` finds in its code, or if it is marked `rest` by hand because it
-is expensive. The mark is checked: in `make test` a test without `once` fails if it starts a process or a connection.
-So does one that reads a project as `lumen run` does, for a process reads it unless an earlier test did.
+is expensive. The mark is checked: in `make test` a test without `once` fails if it starts a process or opens a
+connection. So does one that reads a project as `lumen run` does, for a process reads it unless an earlier test did.
 """
 
 import sys

@@ -57,7 +57,7 @@ def until(
 
     The failure names the condition: in the words of `what`, else by its source text, with the variables it reads; and
     it ends with what `shown` returns, as a transcript. `meanwhile` is called between two looks, in place of a pause.
-    A test that takes long, as one through a browser does, is followed by a longer pause, which leaves the machine to
+    A condition that takes long, as one in a browser does, is followed by a longer pause, which leaves the machine to
     the awaited work.
     """
     deadline = time.monotonic() + timeout

@@ -57,8 +57,8 @@ def run(
 ) -> Run:
     """Let the controller follow a face (its place in the torso frame [m] by time) for `duration` [s].
 
-    `error` [s] is added to the times at which images say they were taken; `sag` [rad] is how far from the angles that
-    they are told the joints come to rest, as weight lets them.
+    `error` [s] is added to the times at which images say they were taken; `sag` [rad] is the
+    distance from their goals at which the joints come to rest, because of their weight.
     """
     tracker = Tracker(controller, HEAD)
     head, target = list(start), list(start)

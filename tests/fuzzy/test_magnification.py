@@ -13,7 +13,7 @@ from lumen.language.controllers import Activation, Conjunction, ControllerDefini
 
 MIDDLE = {"FaceXLoc": 160.0, "FaceYLoc": 120.0}
 ZOOMS = [2 ** (k / 2) for k in range(12)]
-"""The magnifications below 64, the greatest one of the shipped file."""
+"""Magnifications in steps of the square root of 2, below the greatest one of the shipped file, 64."""
 
 
 @pytest.fixture(scope="module")

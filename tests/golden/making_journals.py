@@ -302,7 +302,7 @@ class Collected(Observer):
 
 
 def snapshots() -> None:
-    """Write a snapshot of every state of the tour, from the first story that enters it, else after an operator did."""
+    """Write a snapshot of every state of the tour, from the first story that enters it, else entered by an operator."""
     project = lumen.load(PROJECTS / "tour")
     collected = Collected(project.machine)
     for story in project.stories.values():

@@ -31,7 +31,7 @@ class Watch:
         self._given: dict[int, list[Any]] = defaultdict(list)
 
     def entered(self, root: object) -> list[str]:
-        """Return the callables that have entered objects within reach of `root`: `Class.attribute: callable`."""
+        """Return `Class.attribute: callable`, sorted, for what has entered the objects within reach of `root`."""
         found = set()
         reached = _reachable(root, self._package)
         for key, (thing, before) in self._made.items():

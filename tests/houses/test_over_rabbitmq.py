@@ -81,7 +81,7 @@ def hall(two: Path, broker: RabbitMQ, capsys: pytest.CaptureFixture[str]) -> Ite
 
 
 def test_two_robots_of_one_process(hall: Hall, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A second process for a name is refused; a stop concerns one robot, outlives its process, and names its end."""
+    """A second process for a name is refused; a stop concerns one robot and outlives its process, whose end is told."""
     monkeypatch.setattr(sys, "stdin", None)
     process, _ = hall.begin()
     until(hall.both)

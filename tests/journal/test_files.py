@@ -1,4 +1,4 @@
-"""Files of the journal: readable to any byte at which they are cut; faults are reported, and old files deleted."""
+"""Files of the journal: a file cut at any byte is a prefix; faults are reported, and old files are deleted."""
 
 import os
 import random
@@ -107,7 +107,7 @@ def test_what_is_old_and_what_is_too_much_is_deleted(tmp_path: Path) -> None:
 
 
 def test_what_a_cut_left_is_gone_when_somebody_is_forgotten(tmp_path: Path) -> None:
-    """A cut entry is removed, since the name in it can't be known."""
+    """A cut entry is removed, since a name in it can't be recognised."""
     file = tmp_path / "x.journal"
     file.write_bytes(packed(entries(20, 1), 4)[:-3] + b"Budi")
     os.utime(file, (1e9, 1e9))

@@ -1,4 +1,4 @@
-"""Saved files are tried on recorded visits: a difference is reported, or refuses the files unless taken by hand."""
+"""Saved files are tried on recorded visits: `warn` reports differences, `refuse` refuses, a person may overrule."""
 
 import sys
 from pathlib import Path

@@ -41,7 +41,7 @@ class Show(NamedTuple):
     moments: list[Moment]
     events: list[str]
     tilt: float
-    """The greatest tilt of the torso, as `SimulatedRobot.greatest_tilt` has it."""
+    """The greatest tilt of the torso while the robot was upright [degrees]."""
     took: float
     """The duration until the answer [s]."""
 

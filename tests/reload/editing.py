@@ -80,7 +80,7 @@ def regrouping(draw: st.DrawFn, data: Data) -> None:
 
 
 def retiming(draw: st.DrawFn, data: Data) -> None:
-    """Let states be left after another time."""
+    """Change the times after which states are left."""
     for _, state in states_of(data):
         if "after" in state and draw(st.booleans()):
             [(_, row)] = state["after"].items()

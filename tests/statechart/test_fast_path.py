@@ -93,9 +93,7 @@ EVENTS = st.builds(
 
 
 def quick(machine: Machine, snapshot: Snapshot, event: Event) -> Step | None:
-    """Return the step of the fast path, None without one; functions are written for events, and guards, that come
-    again.
-    """
+    """Return the step of the fast path, None without one, at the third call: functions are written for what recurs."""
     steps = [compiled(machine).fast_paths.step(snapshot, event) for _ in range(3)]
     return steps[-1]
 

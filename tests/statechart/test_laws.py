@@ -36,7 +36,7 @@ DEEDS: list[dict[str, Any]] = [
 
 @st.composite
 def trees(draw: st.DrawFn, invokes: list[str]) -> dict[str, Any]:
-    """Draw a random behaviour: at most three levels, any target, no endless `always`; some states invoke `invokes`."""
+    """Draw a random behaviour: at most three levels, any target, no endless `always`; states may invoke `invokes`."""
     tree = draw(
         st.recursive(st.just({}), lambda t: st.dictionaries(st.sampled_from("abc"), t, min_size=1), max_leaves=8)
     )

@@ -41,7 +41,7 @@ LONG = {
 }
 """Stories of many minutes, or with several visits, which only `make soak` tries."""
 SAMPLE = 8
-"""The number of the other stories that are tried otherwise: `LUMEN_SEED=5` draws others."""
+"""The number of other stories that are tried; `LUMEN_SEED=5` draws others."""
 
 
 def shipped() -> Iterator[Any]:

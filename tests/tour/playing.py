@@ -80,7 +80,7 @@ def play(
     part: Callable[[float], None] | None = None,
     observers: Sequence[Observer] = (),
 ) -> Run:
-    """Play a story to its end, or to its failure; `part` lives with it, `observers` watch it."""
+    """Play a story to its end, or to its failure; return the record. `part` is called with the time of each tick."""
     run = Run()
     chosen = Setup(performer, SimulatedClock(performer.advance), performer) if performer else None
     rehearsal = rehearse(project, story, chosen, observers=[Log(run), *observers], hooks=[part] if part else [])

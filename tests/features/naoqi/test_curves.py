@@ -14,7 +14,7 @@ from tests.features.naoqi.joints import bezier
 
 
 def worst(motion: MotionDefinition, start: dict[str, float]) -> float:
-    """Return the largest distance between NAOqi's joints and the motion's, over the motion's cycles [rad]."""
+    """Return the largest distance between NAOqi's joints and the motion's, at every third cycle [rad]."""
     trajectory = Trajectory(motion, start)
     way = curves(trajectory.tracks)
     joints = {n: bezier(start[n], t, c) for n, t, c in zip(*way, strict=True)}

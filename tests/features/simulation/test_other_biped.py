@@ -18,7 +18,7 @@ ROBOTS = 20
 
 
 def walks(seed: int) -> bool:
-    """Return whether a robot of other masses, on another floor, with noisy sensors walks half a metre truly."""
+    """Return whether a robot of random masses, on a random floor, walks half a metre without a fall or great error."""
     walked = walk(any_robot(shipped("sprout"), seed), HALF_A_METRE)
     return walked.true and walked.upright
 

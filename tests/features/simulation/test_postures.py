@@ -35,7 +35,7 @@ def standing(robot: SimulatedRobot) -> bool:
 
 
 def load(robot: SimulatedRobot, *parts: str) -> float:
-    """Return the share of the robot's weight that these links carry, from 0 on."""
+    """Return the share of the robot's weight that these links carry."""
     model, data, force = robot.world.model, robot.world.data, 0.0
     for i in range(data.ncon):
         names = {model.body(model.geom_bodyid[g]).name for g in data.contact[i].geom}
