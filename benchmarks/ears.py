@@ -68,7 +68,7 @@ class Spoken(NamedTuple):
 
 
 def spoken(sentences: Mapping[str, str], language: str, noise: float | None) -> list[Spoken]:
-    """Return each sentence with the next voice, and noise that is `noise` [dB] below the voice."""
+    """Return each sentence with the next voice, and noise that is `noise` [dB] below the voice; None means no noise."""
     random = np.random.default_rng(1)
     found = []
     pairs = [(text, state) for state, lines in sentences.items() for text in re.split("[;\n]", lines.strip())]

@@ -34,7 +34,10 @@ PLACES = {"fine", "not_fine", "dance", "sing", "photo", "goodbye", "answer", "ex
 
 
 class Tried(NamedTuple):
-    """A saying that was tried: its kind and language, whether it was held back, and whether it was understood."""
+    """A saying that was tried: its kind and language, whether it was held back, and whether it was understood.
+
+    `wanted` is the expected result, and `found` the actual one.
+    """
 
     kind: str
     language: str
@@ -156,7 +159,7 @@ def table(tried: list[Tried]) -> Iterator[str]:
 
 
 def share(tried: list[Tried], *, held: bool) -> str:
-    """Return the share of right ones, as text."""
+    """Return the share of right ones, as text; `-` if there are none to count."""
     of = [one.right for one in tried if one.held_back == held]
     return f"{sum(of)} of {len(of)}, {100 * sum(of) / len(of):.0f} %" if of else "-"
 

@@ -87,7 +87,7 @@ def around(machine: MachineDefinition, name: str) -> list[str]:
 
 
 def spoken(text: str, voice: str, pace: int) -> Samples:
-    """Return the sound of a text without silence around it."""
+    """Return the sound of a text, at `pace` words per minute, without silence around it."""
     said = resampled(espeak().speak(text, voice, pace), RATE)
     samples = np.frombuffer(said.samples, "<i2").astype(float)
     loud = np.flatnonzero(np.abs(samples) > 200)
@@ -113,7 +113,7 @@ def noise(length: int, seed: int, *, dull: bool = False) -> Samples:
 
 
 def rested(said: Samples, level: float | None, seed: int) -> Samples:
-    """Return the speech between two pauses, with noise that is `level` [dB] below the voice."""
+    """Return the speech between two pauses, with noise that is `level` [dB] below the voice; None means no noise."""
     whole = np.pad(said, RATE)
     if level is None:
         return whole

@@ -143,7 +143,10 @@ class Asker:
         return late
 
     def say(self, text: str) -> float:
-        """Return the time until a text was said [s]; it is sent again after a refusal."""
+        """Return the time until a text was said [s]; it is sent again after a refusal.
+
+        Raise SystemExit if it was not said within `PATIENCE`.
+        """
         began = time.monotonic()
         while time.monotonic() - began < PATIENCE:
             sent = self._send(COMMAND, "say", {"text": text})

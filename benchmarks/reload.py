@@ -102,7 +102,7 @@ class Outcome:
 
 
 class Told(NamedTuple):
-    """A verdict: its time, its files, and the durations of validation and swap; times in [s]."""
+    """A verdict: its time, the hash of its files, and the durations of validation (`own`) and swap; times in [s]."""
 
     at: float
     verdict: str
@@ -277,7 +277,7 @@ class Soak:
                 outcome.wrong.append(f"refused good files: {told.reason}")
 
     def count(self, place: int) -> None:
-        """Record memory [bytes], threads and open files of this process."""
+        """Record memory [bytes], threads and open files of this process: at place 0 after warming up, 1 at the end."""
         import gc
 
         gc.collect()

@@ -59,13 +59,16 @@ class Ear:
             self.changed.notify_all()
 
     def listen(self, joints: int, patience: float = 60.0) -> None:
-        """Wait for that many joint messages: by then the first image is rendered, which takes longest."""
+        """Wait for that many joint messages: by then the first image is rendered, which takes longest.
+
+        Raise SystemExit after `patience` [s].
+        """
         with self.changed:
             if not self.changed.wait_for(lambda: len(self.senses[Sense.JOINT]) >= joints, patience):
                 raise SystemExit(f"no angles came within {patience:.0f} s")
 
     def wait(self, id: str, state: str, patience: float = 60.0) -> float:
-        """Wait until a command reaches a state; return the time [s]."""
+        """Wait until a command reaches a state; return the time [s]. Raise SystemExit after `patience` [s]."""
         with self.changed:
             if not self.changed.wait_for(lambda: (id, state) in self.reports, patience):
                 raise SystemExit(f"the robot did not say within {patience:g} s that `{id}` is {state}")

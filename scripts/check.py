@@ -277,7 +277,7 @@ CHECKS: dict[Check, int] = {
 
 
 def wrong(check: Check, at_least: int) -> list[str]:
-    """Return a line for each problem that a check found."""
+    """Return a line for each problem that a check found, and one if it looked at fewer than `at_least` things."""
     looked = list(check())
     said = [f"{name}: {problem}" for name, problem in looked if problem]
     few = f"looked at {len(looked)} things, not at least {at_least}: its pattern no longer matches"

@@ -67,7 +67,7 @@ def _key(place: Place) -> tuple[str, str]:
 
 
 def _found(package: Package) -> list[Place]:
-    """Return all such lists, in the order of the files; one that is both a table and names counts once."""
+    """Return the lists of all four kinds, in the order of the files; one of two kinds counts once."""
     finders = (tables, names, chains, enumerations)
     found: dict[tuple[str, int], Place] = {}
     for place in (place for find in finders for place in find(package)):

@@ -56,7 +56,11 @@ LONGEST = 400.0
 
 @dataclass(frozen=True)
 class Shown:
-    """A block of a page: commands with their outputs, or a file."""
+    """A block of a page: commands with their outputs, or a file.
+
+    `place` is its page and line; `words` are those of its `run:` comment; `before` is the command that the reader runs
+    before it.
+    """
 
     place: str
     language: str

@@ -52,7 +52,11 @@ COLUMNS = ("mutants", "test", "all", "hangs", "not executed", "survived", "equiv
 
 
 class Mutant(NamedTuple):
-    """A change of a statement in a file; `before` and `after` show it."""
+    """A change of a statement in a file; `before` and `after` show it.
+
+    `line` is the first line of the change, `source` the text of the statement's first line, and `content` the whole
+    changed file.
+    """
 
     file: str
     statement: Statement

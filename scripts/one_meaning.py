@@ -1,4 +1,4 @@
-"""Find names with two meanings: definitions of a word outside the code that has its one meaning, and images."""
+"""Find names with two meanings: definitions of a word outside the code that has its one meaning, and metaphors."""
 
 import ast
 from collections.abc import Iterator, Mapping, Sequence
@@ -45,7 +45,7 @@ MEANINGS: Mapping[str, Meaning] = {
     ),
     "snapshotstore": Meaning("the snapshots and files that a run keeps", ("run/snapshot_store.py",)),
 }
-"""Words that had two or three meanings, in small letters and without underscores around them."""
+"""Words with one allowed meaning, in lower case and without underscores around them."""
 IMAGES: Mapping[str, str] = {
     "_came": "_received",
     "_heed": "_on_interrupt, _on_listening",
@@ -57,7 +57,7 @@ IMAGES: Mapping[str, str] = {
 
 
 def names_of_two_meanings(files: Sequence[SourceFile]) -> Iterator[Place]:
-    """Yield the definitions of a word outside its homes, and those of an image.
+    """Yield the definitions of a word outside its homes, and those of a metaphor.
 
     Modules, classes, functions, attributes of objects, fields and constants count; local names do not.
     """

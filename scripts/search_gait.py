@@ -61,7 +61,10 @@ BEGINS = 1.5
 
 
 class Try(NamedTuple):
-    """The numbers of a try, and its score: the mean distance of all robots [m], minus sideways errors."""
+    """The numbers of a try, its score, and the number of robots that did not fall.
+
+    The score is the mean distance of all robots [m], minus sideways errors; 0 if a robot fell.
+    """
 
     numbers: dict[str, float]
     score: float
