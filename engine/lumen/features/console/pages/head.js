@@ -9,6 +9,7 @@ import { Resume } from "./resume.js";
 import { ROLES, askPin, leave, mode, show } from "./session.js";
 import {
   LANGUAGES,
+  Select,
   Since,
   byId,
   html,
@@ -23,7 +24,6 @@ import {
   useRedraw,
   useRef,
   useState,
-  typed,
 } from "./ui.js";
 
 const PAGES = ["", "day", "files", "see"];
@@ -98,11 +98,8 @@ function Theme() {
     keep("lumen.theme", theme === "auto" ? null : theme);
     redraw();
   };
-  return html`<label>${t("theme")}<select value=${now} onChange=${typed(set)}>
-    ${["auto", "light", "dark"].map(
-      (theme) => html`<option value=${theme}
-      selected=${theme === now}>${t(`theme.${theme}`)}</option>`,
-    )}</select></label>`;
+  return html`<label>${t("theme")}<${Select} value=${now} choose=${set}
+      options=${["auto", "light", "dark"].map((theme) => [theme, t(`theme.${theme}`)])} /></label>`;
 }
 
 /** A sound as an alarm begins: this browser makes it, so each person decides for themselves. */
@@ -138,17 +135,11 @@ function Settings() {
     <div id="settings" hidden=${!open} class="sheet">
       ${
         modes.length > 1 &&
-        html`<label>${t("mode")}<select value=${mode()} onChange=${typed(show)}>
-        ${modes.map(
-          (one) => html`<option value=${one}
-          selected=${one === mode()}>${t(`mode.${one}`)}</option>`,
-        )}</select></label>`
+        html`<label>${t("mode")}<${Select} value=${mode()} choose=${show}
+          options=${modes.map((one) => [one, t(`mode.${one}`)])} /></label>`
       }
-      <label>${t("language")}<select value=${language()} onChange=${typed(speak)}>
-        ${Object.entries(LANGUAGES).map(
-          ([code, name]) => html`<option value=${code} lang=${code}
-          selected=${code === language()}>${name}</option>`,
-        )}</select></label>
+      <label>${t("language")}<${Select} value=${language()} choose=${speak}
+        options=${Object.entries(LANGUAGES).map(([code, name]) => [code, name, code])} /></label>
       <${Theme} /><${Sound} />
       ${
         live.role === "nobody"

@@ -6,7 +6,7 @@ import { isHere } from "./live.js";
 import { waitsForResume } from "./now/troubles.js";
 import { inPageLanguage } from "./quoted.js";
 import { may } from "./session.js";
-import { Dialog, Usable, html, t, useState } from "./ui.js";
+import { Ask, Usable, html, t, useState } from "./ui.js";
 
 /**
  * The button and its question; nothing if the robot neither rests nor waits, or the person may not.
@@ -16,17 +16,13 @@ export function Resume({ robot }) {
   const [asking, ask] = useState(false),
     waits = waitsForResume(robot);
   if (!may("operator") || !(robot.stopped || waits)) return null;
-  const go = () => {
-    ask(false);
-    command(robot.robot, "resume");
-  };
   return html`<${Usable} when=${isHere(robot)}>
       <button type="button" class="resume" onClick=${() => ask(true)}>${t("resume")}</button></${Usable}>
     ${
       asking &&
-      html`<${Dialog} title=${t("resume.ask", { name: robot.robot })} onClose=${() => ask(false)}
-      actions=${html`<button type="button" class="strong" onClick=${go}>${t("resume")}</button>`}>
+      html`<${Ask} title=${t("resume.ask", { name: robot.robot })} label=${t("resume")} onClose=${() => ask(false)}
+      onYes=${() => command(robot.robot, "resume")}>
       ${!waits && html`<p>${t("resume.by", { by: inPageLanguage(robot.stopped_by ?? "?") })}</p>`}
-      <p>${t("resume.room")}</p></${Dialog}>`
+      <p>${t("resume.room")}</p></${Ask}>`
     }`;
 }

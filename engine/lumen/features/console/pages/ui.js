@@ -203,6 +203,34 @@ export function Part({ title, kind = "", aside = null, children }) {
 export const Usable = ({ when, children }) => html`<fieldset class="bare" disabled=${!when}>${children}</fieldset>`;
 
 /**
+ * A word about how something is: `open` or `well` is good, `warn` and `bad` are not, `kind` says only what it is.
+ * @param {{ state?: string, children?: any }} props
+ */
+export const Badge = ({ state, children }) => html`<span class="badge" data-state=${state}>${children}</span>`;
+
+/**
+ * A list from which one is chosen: `options` are values, each with its text, and with the language of the text if that
+ * is not the page's. Other attributes are those of `select`.
+ * @typedef {[value: string, text: string, language?: string][]} Options
+ * @typedef {{ value: string, options: Options, choose: (value: string) => void, field?: any }} Choosing
+ * @param {Choosing & Record<string, any>} props
+ */
+export const Select = ({ value, options, choose, field = null, ...more }) => html`<select ...${more} ref=${field}
+  value=${value} onChange=${typed(choose)}>${options.map(
+    ([one, text, lang]) => html`<option value=${one} lang=${lang} selected=${one === value}>${text}</option>`,
+  )}</select>`;
+
+/**
+ * A few options beside each other; `titled` if the legend is seen, which a screen reader reads in any case.
+ * @param {{ legend: string, name: string, titled?: boolean } & Choosing} props
+ */
+export const Choice = ({ legend, name, titled = true, value, options, choose }) => html`<fieldset class="choice">
+  <legend class=${titled ? "" : "hidden"}>${legend}</legend>${options.map(
+    ([one, text]) => html`<label><input type="radio" name=${name} value=${one} checked=${one === value}
+      onChange=${() => choose(one)} /><span>${text}</span></label>`,
+  )}</fieldset>`;
+
+/**
  * A dialog that is open as long as it is drawn; Escape and the button close it. Not modal: Rest stays in reach above
  * it.
  * @param {{ title: string, onClose: () => void, children?: any, actions?: any }} props
@@ -229,6 +257,19 @@ export function Dialog({ title, onClose, children, actions = null }) {
     <dialog open ref=${box} tabindex="-1" aria-labelledby=${heading}><h2 id=${heading}>${title}</h2>${children}
       <div class="actions">${actions}<button type="button"
         onClick=${onClose}>${t(actions ? "cancel" : "close")}</button></div></dialog>`;
+}
+
+/**
+ * A question before something is done: the button `label` does it, another one closes the question.
+ * @param {{ title: string, label: string, onYes: () => void, onClose: () => void, children?: any }} props
+ */
+export function Ask({ title, label, onYes, onClose, children }) {
+  const yes = () => {
+    onClose();
+    onYes();
+  };
+  const button = html`<button type="button" class="strong" onClick=${yes}>${label}</button>`;
+  return html`<${Dialog} title=${title} onClose=${onClose} actions=${button}>${children}</${Dialog}>`;
 }
 
 /**

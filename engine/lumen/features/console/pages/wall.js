@@ -4,7 +4,7 @@
 import { consoleNow, isHere, live } from "./live.js";
 import { inPageLanguage } from "./quoted.js";
 import { Resume } from "./resume.js";
-import { Since, html, percent, t, useRedraw } from "./ui.js";
+import { Badge, Since, html, percent, t, useRedraw } from "./ui.js";
 import { innermost } from "./now/states.js";
 import { LOW, MILD, alarmsOf, batteryOf } from "./now/troubles.js";
 
@@ -38,12 +38,7 @@ function Tile({ robot }) {
     <p class="line">${saying ? html`“${saying.text}”` : html`<span class="quiet">${t("says.nothing")}</span>`}</p>
     <dl class="facts"><div><dt>${t("visitor")}</dt><dd>${robot.visitor || t("nobody.here")}</dd></div>
       <div><dt>${t("battery")}</dt><dd>${battery === null ? t("unknown") : percent(battery)}
-        ${
-          battery !== null &&
-          battery < LOW &&
-          html` <span class="badge" data-state="bad">
-          ${t("battery.low")}</span>`
-        }</dd></div>
+        ${battery !== null && battery < LOW && html` <${Badge} state="bad">${t("battery.low")}</${Badge}>`}</dd></div>
       <div><dt>${t("realtime")}</dt><dd>${robot.realtime == null ? t("unknown") : percent(robot.realtime * 100)}</dd>
         </div></dl></li>`;
 }

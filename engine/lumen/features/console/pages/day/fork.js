@@ -3,7 +3,7 @@
 /** @import { Data, Entry, Forked } from "../types" */
 /** @import { Filled } from "./instead.js" */
 import { Quote, reasonOf } from "../quoted.js";
-import { Part, clock, html, ticked, lineOf, t, useEffect, useRef, useState } from "../ui.js";
+import { Badge, Part, clock, html, lineOf, t, ticked, useEffect, useRef, useState } from "../ui.js";
 import { Instead, blank, eventOf } from "./instead.js";
 
 /**
@@ -32,10 +32,7 @@ function Column({ title, entries, other, from }) {
     .map(
       (entry) => html`<li class=${there.has(entry.text) ? "" : "differs"}>
     <time>${clock(when(entry))}</time> ${
-      there.has(entry.text)
-        ? ""
-        : html`<span class="badge"
-      data-state="warn">≠</span> `
+      there.has(entry.text) ? "" : html`<${Badge} state="warn">≠</${Badge}> `
     }${lineOf(entry)}</li>`,
     )}</ol></div>`;
 }

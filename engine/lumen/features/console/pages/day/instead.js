@@ -1,7 +1,7 @@
 // @ts-check
 // What happens instead, for a fork: nothing else, other words of the visitor, or an event with its values.
 import { robotOf } from "../live.js";
-import { html, languageName, t, typed } from "../ui.js";
+import { Select, html, languageName, t, typed } from "../ui.js";
 
 /**
  * What is filled in: `kind` is `same`, `says` or `event`; the others belong to `says` or `event`.
@@ -54,10 +54,8 @@ function Words({ languages, form, write }) {
     ${
       languages.length > 1 &&
       html`<label><span>${t("language")}</span>
-      <select value=${spoken} onChange=${typed((text) => write({ language: text }))}>${languages.map(
-        (one) => html`
-        <option value=${one} selected=${one === spoken}>${languageName(one)}</option>`,
-      )}</select></label>`
+      <${Select} value=${spoken} choose=${(/** @type {string} */ one) => write({ language: one })}
+        options=${languages.map((one) => [one, languageName(one)])} /></label>`
     }`;
 }
 
@@ -92,11 +90,8 @@ export function Instead({ name, form, write }) {
   const robot = robotOf(name),
     languages = robot?.languages?.length ? robot.languages : [robot?.language ?? "en"];
   return html`<label><span>${t("fork.instead")}</span>
-      <select class="instead" value=${form.kind} onChange=${typed((text) => write({ kind: text }))}>
-        ${["same", "says", "event"].map(
-          (one) => html`
-          <option value=${one} selected=${one === form.kind}>${t(`fork.${one}`)}</option>`,
-        )}</select></label>
+      <${Select} class="instead" value=${form.kind} choose=${(/** @type {string} */ kind) => write({ kind })}
+        options=${["same", "says", "event"].map((one) => [one, t(`fork.${one}`)])} /></label>
     ${form.kind === "says" && html`<${Words} languages=${languages} form=${form} write=${write} />`}
     ${form.kind === "event" && html`<${Other} events=${robot?.events ?? []} form=${form} write=${write} />`}`;
 }

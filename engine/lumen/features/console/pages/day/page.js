@@ -9,6 +9,7 @@ import { EditButtons, SentenceDialog } from "../sentence.js";
 import { may } from "../session.js";
 import {
   Part,
+  Select,
   clock,
   html,
   languageName,
@@ -19,7 +20,6 @@ import {
   useRedraw,
   useRef,
   useState,
-  typed,
 } from "../ui.js";
 import { Find } from "./find.js";
 import { Fork, speechOf } from "./fork.js";
@@ -213,12 +213,8 @@ export default function DayPage({ name }) {
     return html`<h1 class="hidden">${t("day")}</h1><p class="notice bad" role="alert"><${Quote} text=${failed} /></p>`;
   if (!day) return html`<p class="notice">${t("loading")}</p>`;
   return html`<div class="page-head"><h1>${t("page.day")}</h1>
-      <label><span>${t("day.date")}</span><select class="date" value=${day.date}
-        onChange=${typed(pick)}>
-        ${[...new Set([...(day.dates ?? []), day.date])].sort().map(
-          (one) => html`
-          <option value=${one} selected=${one === day.date}>${one}</option>`,
-        )}</select></label>
+      <label><span>${t("day.date")}</span><${Select} class="date" value=${day.date} choose=${pick}
+        options=${[...new Set([...day.dates, day.date])].sort().map((one) => [one, one])} /></label>
       ${
         may("show") &&
         html`<button type="button"

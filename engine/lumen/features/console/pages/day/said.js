@@ -3,7 +3,7 @@
 /** @import { Heard } from "../types" */
 import { Quote, reasonOf } from "../quoted.js";
 import { may } from "../session.js";
-import { fixed, html, languageName, t, useEffect, useRef, useState, typed } from "../ui.js";
+import { Select, fixed, html, languageName, t, useEffect, useRef, useState, typed } from "../ui.js";
 
 /**
  * The rows that could have taken a sentence, as the values of a choice.
@@ -19,6 +19,7 @@ const choices = (one, rows) =>
 function Row({ name, one, rows, saved }) {
   const could = choices(one, rows),
     several = one.states.length > 1;
+  const options = could.map(({ state, row }, n) => [`${n}`, several ? `${row} (${state})` : row]);
   const [open, setOpen] = useState(false),
     [text, setText] = useState(one.text),
     [chosen, choose] = useState(""),
@@ -61,12 +62,7 @@ function Row({ name, one, rows, saved }) {
     ${
       open &&
       html`<form class="cue" onSubmit=${save}><label><span>${t("day.said.row")}</span>
-        <select ref=${field} value=${chosen} onChange=${typed(choose)} required><option value="">
-        </option>
-      ${could.map(
-        ({ state, row }, n) => html`<option value=${n}
-        selected=${`${n}` === chosen}>${several ? `${row} (${state})` : row}</option>`,
-      )}</select></label>
+        <${Select} field=${field} value=${chosen} choose=${choose} required options=${[["", ""], ...options]} /></label>
       <label class="grow"><span>${t("day.said.text")} (${languageName(one.language)})</span>
         <input value=${text} onInput=${typed(setText)} maxlength="1000" required autocomplete="off" />
         </label>

@@ -5,7 +5,7 @@ import { command } from "../commands.js";
 import { JOB, get, listen, robotOf } from "../live.js";
 import { InEnglish, Quote, reasonOf } from "../quoted.js";
 import { holds, may } from "../session.js";
-import { Dialog, Part, clock, fixed, html, place, t, useEffect, useRedraw, useState } from "../ui.js";
+import { Ask, Badge, Part, clock, fixed, html, place, t, useEffect, useRedraw, useState } from "../ui.js";
 
 /** @type {Record<string, string>} */
 const LEVELS = { error: "bad", warning: "warn", info: "kind" };
@@ -17,7 +17,7 @@ function Findings({ findings }) {
       ? html`<p class="quiet">${t("files.findings.none")}</p>`
       : html`<${InEnglish} /><ul class="plain-list">${findings.map(
           (one) => html`<li class="finding">
-      <p><span class="badge" data-state=${LEVELS[one.severity] ?? "kind"}>${t(`severity.${one.severity}`)}</span> <span
+      <p><${Badge} state=${LEVELS[one.severity] ?? "kind"}>${t(`severity.${one.severity}`)}</${Badge}> <span
         class="place">${place(one.file, one.line)}${one.column ? `:${one.column}` : ""}</span></p>
       <p lang="en"><b>${one.message}</b></p>${one.hint && html`<p lang="en">${one.hint}</p>`}<p
         class="place">${one.code}</p></li>`,
@@ -69,9 +69,8 @@ function Changes({ report, mode }) {
   const { changes = [], restart = [] } = report;
   return html`<${Part} title=${t("files.diff")} kind="changes" aside=${
     report.risk &&
-    html`<span class="badge"
-    data-state=${report.risk === "cosmetic" ? "open" : "warn"}
-    >${t("files.risk", { risk: t(`risk.${report.risk}`) })}</span>`
+    html`<${Badge} state=${report.risk === "cosmetic" ? "open" : "warn"}
+    >${t("files.risk", { risk: t(`risk.${report.risk}`) })}</${Badge}>`
   }>
     ${
       changes.length
@@ -121,10 +120,6 @@ function Actions({ name, files }) {
   const waits = Boolean(files.staged?.length || files.waiting);
   const nothing = waits ? null : t(files.mode === "off" ? "files.grey.off" : "files.grey.nothing");
   const keeps = Boolean(files.trial) && !waits; // newer files that wait are what Apply means
-  const go = () => {
-    if (asking) command(name, asking);
-    ask(null);
-  };
   const action = (
     /** @type {string} */ verb,
     /** @type {string} */ label,
@@ -138,11 +133,10 @@ function Actions({ name, files }) {
       ${action("rollback", "files.back")}</ul>
     ${
       asking &&
-      html`<${Dialog}
-        title=${t(asking === "rollback" ? "files.back.ask" : keeps ? "files.keep.ask" : "files.apply.ask")}
-      onClose=${() => ask(null)} actions=${html`<button type="button" class="strong" onClick=${go}>
-        ${t(asking === "rollback" ? "files.back" : keeps ? "files.keep" : "files.apply")}</button>`}>
-      <p><${Quote} text=${files.waiting || files.reason || ""} /></p></${Dialog}>`
+      html`<${Ask} title=${t(asking === "rollback" ? "files.back.ask" : keeps ? "files.keep.ask" : "files.apply.ask")}
+        label=${t(asking === "rollback" ? "files.back" : keeps ? "files.keep" : "files.apply")}
+      onClose=${() => ask(null)} onYes=${() => command(name, asking)}>
+      <p><${Quote} text=${files.waiting || files.reason || ""} /></p></${Ask}>`
     }`;
 }
 
@@ -177,9 +171,9 @@ export default function FilesPage({ name }) {
     verdict = files.last?.verdict ?? "applied"; // nothing was saved: what runs is active
   const lines = [...(files.last?.lines ?? []), ...(files.last?.notes ?? [])];
   return html`<h1>${t("page.files")}</h1>
-    <${Part} title=${t("files.saved")} kind="saved"><p><span class="badge"
-      data-state=${verdict === "refused" ? "bad" : verdict === "waiting" || verdict === "staged" ? "warn" : "open"}
-      >${t(`verdict.${verdict}`)}</span>
+    <${Part} title=${t("files.saved")} kind="saved"><p><${Badge}
+      state=${verdict === "refused" ? "bad" : verdict === "waiting" || verdict === "staged" ? "warn" : "open"}
+      >${t(`verdict.${verdict}`)}</${Badge}>
         ${" "}${
           holds("author") &&
           html`<${Quote} text=${files.last?.reason ?? ""} /> <${Quote}

@@ -4,7 +4,7 @@
 import { get } from "../live.js";
 import { Quote, inPageLanguage, reasonOf } from "../quoted.js";
 import { may } from "../session.js";
-import { Dialog, Part, fixed, html, span, t, useEffect, useState } from "../ui.js";
+import { Ask, Badge, Part, fixed, html, span, t, useEffect, useState } from "../ui.js";
 
 const PERIOD = 2000; // [ms] how often the centre is asked
 /** @type {Record<string, string>} */
@@ -28,9 +28,8 @@ function Steps({ rollout }) {
     const now = i === rollout.step && !step.done;
     return html`<li aria-current=${now ? "step" : null}>
       <b>${inPageLanguage(step.to)}</b> ${t("fleet.most", { count: step.most })}
-      ${" "}<span class="badge"
-        data-state=${step.done ? "open" : now ? VERDICTS[rollout.state] : "kind"}
-        >${t(step.done ? "fleet.good" : now ? `fleet.${rollout.state}` : "fleet.later")}</span>
+      ${" "}<${Badge} state=${step.done ? "open" : now ? VERDICTS[rollout.state] : "kind"}
+        >${t(step.done ? "fleet.good" : now ? `fleet.${rollout.state}` : "fleet.later")}</${Badge}>
       ${
         now &&
         html` <span
@@ -48,12 +47,9 @@ function Actions({ rollout, act }) {
     <button type="button" class="strong" onClick=${() => ask(true)}>${t("fleet.abort")}</button></div>
     ${
       asking &&
-      html`<${Dialog} title=${t("fleet.abort.ask")} onClose=${() => ask(false)}
-      actions=${html`<button type="button" class="strong" onClick=${() => {
-        ask(false);
-        act("abort");
-      }}>${t("fleet.abort")}</button>`}>
-      <p>${t("fleet.abort.more", { count: rollout.assigned.length })}</p></${Dialog}>`
+      html`<${Ask} title=${t("fleet.abort.ask")} label=${t("fleet.abort")} onClose=${() => ask(false)}
+      onYes=${() => act("abort")}>
+      <p>${t("fleet.abort.more", { count: rollout.assigned.length })}</p></${Ask}>`
     }`;
 }
 
@@ -62,8 +58,8 @@ function Rollout({ rollout, act }) {
   if (!rollout)
     return html`<${Part} title=${t("fleet.rollout")} kind="rollout"><p class="quiet">${t("fleet.none")}</p></${Part}>`;
   const under = ["going", "paused", "a person decides"].includes(rollout.state);
-  return html`<${Part} title=${t("fleet.rollout")} kind="rollout" aside=${html`<span class="badge"
-    data-state=${VERDICTS[rollout.state]}>${t(`fleet.${rollout.state}`)}</span>`}>
+  return html`<${Part} title=${t("fleet.rollout")} kind="rollout" aside=${html`<${Badge}
+    state=${VERDICTS[rollout.state]}>${t(`fleet.${rollout.state}`)}</${Badge}>`}>
     <p>${t("fleet.bundle")} <span class="place">${rollout.bundle.slice(0, 12)}</span> <${Quote}
       text=${rollout.reason} /></p>
     <${Steps} rollout=${rollout} />
@@ -77,11 +73,9 @@ function House({ house, robots }) {
     class="quiet">${t("fleet.here", { here: house.here, robots: house.robots })}</span>`}>
     <ul class="plain-list">${robots.map(
       (robot) => html`<li key=${robot.name}><b>${robot.name}</b>
-      ${" "}<span class="badge" data-state=${LEVELS[robot.state] ?? "kind"}>${t(`fleet.${robot.state}`)}</span>
+      ${" "}<${Badge} state=${LEVELS[robot.state] ?? "kind"}>${t(`fleet.${robot.state}`)}</${Badge}>
       ${" "}<span class="place">${robot.bundle.slice(0, 12)}</span>${
-        robot.pinned &&
-        html` <span class="badge"
-        data-state="kind">${t("fleet.pinned")}</span>`
+        robot.pinned && html` <${Badge} state="kind">${t("fleet.pinned")}</${Badge}>`
       }
       ${robot.trouble && html`<p><${Quote} text=${robot.trouble} /></p>`}</li>`,
     )}</ul></${Part}>`;

@@ -6,7 +6,7 @@ import { command } from "../commands.js";
 import { Place, Values } from "../places.js";
 import { inPageLanguage } from "../quoted.js";
 import { may } from "../session.js";
-import { Part, Until, Usable, html, t } from "../ui.js";
+import { Choice, Part, Until, Usable, html, t } from "../ui.js";
 import { isHere } from "../live.js";
 
 /**
@@ -88,11 +88,8 @@ export function Autonomy({ robot }) {
   if (!robot.autonomy || !may("operator")) return null;
   const set = (/** @type {string} */ level) =>
     level !== robot.autonomy && command(robot.robot, "autonomy", { level }, t(`autonomy.${level}`));
-  return html`<fieldset class="choice"><legend>${t("autonomy")}</legend>${["ask", "alone"].map(
-    (level) => html`<label>
-    <input type="radio" name="autonomy-${robot.robot}" value=${level} checked=${robot.autonomy === level}
-      onChange=${() => set(level)} /><span>${t(`autonomy.${level}`)}</span></label>`,
-  )}</fieldset>`;
+  return html`<${Choice} legend=${t("autonomy")} name="autonomy-${robot.robot}" value=${robot.autonomy} choose=${set}
+    options=${["ask", "alone"].map((level) => [level, t(`autonomy.${level}`)])} />`;
 }
 
 /**
@@ -101,12 +98,12 @@ export function Autonomy({ robot }) {
  */
 export function Model({ robot }) {
   if (!robot.model || !may("operator")) return null;
-  const set = (/** @type {boolean} */ on) =>
-    on !== (robot.model === "on") &&
-    command(robot.robot, "model", { on }, `${t("model")} ${t(on ? "model.on" : "model.off")}`);
-  return html`<fieldset class="choice"><legend>${t("model")}</legend>${[true, false].map(
-    (on) => html`<label>
-    <input type="radio" name="model-${robot.robot}" value=${on} checked=${(robot.model === "on") === on}
-      onChange=${() => set(on)} /><span>${t(on ? "model.on" : "model.off")}</span></label>`,
-  )}</fieldset>`;
+  const told = (/** @type {boolean} */ on) => t(on ? "model.on" : "model.off"),
+    now = robot.model === "on";
+  const set = (/** @type {string} */ value) => {
+    const on = value === "true";
+    if (on !== now) command(robot.robot, "model", { on }, `${t("model")} ${told(on)}`);
+  };
+  return html`<${Choice} legend=${t("model")} name="model-${robot.robot}" value=${`${now}`} choose=${set}
+    options=${[true, false].map((on) => [`${on}`, told(on)])} />`;
 }

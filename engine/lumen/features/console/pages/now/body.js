@@ -1,7 +1,7 @@
 // @ts-check
 // How the robot and what runs it are: power, heat, distance, time, processes, modules, queues.
 /** @import { Robot } from "../types" */
-import { Part, Since, Usable, clock, fixed, html, percent, t } from "../ui.js";
+import { Badge, Part, Since, Usable, clock, fixed, html, percent, t } from "../ui.js";
 import { Quote, inPageLanguage } from "../quoted.js";
 import { consoleNow, isHere } from "../live.js";
 import { holds } from "../session.js";
@@ -16,11 +16,7 @@ const SLOW = 0.95; // of real time
  */
 function Fact({ name, value, level = 0, state = "well", words = "", full = false }) {
   return html`<div class="fact" data-state=${state}><dt>${name}</dt><dd>
-    <b>${value}</b>${
-      words &&
-      html` <span class="badge"
-    data-state=${state === "well" ? "open" : "bad"}>${words}</span>`
-    }
+    <b>${value}</b>${words && html` <${Badge} state=${state === "well" ? "open" : "bad"}>${words}</${Badge}>`}
     ${full && html`<meter min="0" max="1" value=${level} aria-label=${name} ></meter>`}</dd></div>`;
 }
 
@@ -63,9 +59,8 @@ function Processes({ robot }) {
             <span>${one.parts.join(", ")}</span>
       ${
         robot.connected === false
-          ? html`<span class="badge">${t("unknown")}</span>`
-          : html`<span class="badge"
-        data-state=${gone ? "bad" : "open"}>${t(`process.${one.state}`)}</span>`
+          ? html`<${Badge}>${t("unknown")}</${Badge}>`
+          : html`<${Badge} state=${gone ? "bad" : "open"}>${t(`process.${one.state}`)}</${Badge}>`
       }
       <span class="quiet">${one.word ? `${inPageLanguage(one.word)} · ` : ""}${t("heard.ago")} <${Since} at=${one.heard}
         now=${consoleNow} /></span></li>`;
@@ -80,13 +75,13 @@ export function Body({ robot }) {
   return html`<${Part} title=${t("body")} kind="body">
     ${
       !isHere(robot) &&
-      html`<p><span class="badge" data-state="warn">${t("last.known")}</span>
+      html`<p><${Badge} state="warn">${t("last.known")}</${Badge}>
       </p>`
     }<${Senses} robot=${robot} /><${Processes} robot=${robot} />
     ${
       reload &&
-      html`<h3>${t("last.reload")}</h3><p><span class="badge"
-        data-state=${reload.verdict === "refused" ? "bad" : "open"}>${t(`verdict.${reload.verdict}`)}</span>${" "}
+      html`<h3>${t("last.reload")}</h3><p><${Badge} state=${reload.verdict === "refused" ? "bad" : "open"}
+        >${t(`verdict.${reload.verdict}`)}</${Badge}>${" "}
       <span class="quiet">${clock(reload.at)}</span> ${
         holds("author") &&
         html`<${Quote}

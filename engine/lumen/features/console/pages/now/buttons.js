@@ -5,7 +5,7 @@ import { command } from "../commands.js";
 import { isHere } from "../live.js";
 import { inPageLanguage } from "../quoted.js";
 import { may } from "../session.js";
-import { Dialog, Part, html, inLanguage, t, useEffect, useRef, useState } from "../ui.js";
+import { Ask, Part, html, inLanguage, t, useEffect, useRef, useState } from "../ui.js";
 
 const HELD = 1000; // [ms]
 
@@ -97,12 +97,8 @@ function Button({ robot, button: declared }) {
     </button>${describing && html`<p class="reason" aria-hidden="true">${describing}</p>`}
     ${
       asking &&
-      html`<${Dialog} title=${t("button.ask", { label })} onClose=${() => ask(false)}
-      actions=${html`<button type="button" class="strong" onClick=${() => {
-        ask(false);
-        press();
-      }}>${label}</button>`}>
-      ${may("author") && html`<p>${t("button.event", { event: button.event })}</p>`}</${Dialog}>`
+      html`<${Ask} title=${t("button.ask", { label })} label=${label} onClose=${() => ask(false)} onYes=${press}>
+      ${may("author") && html`<p>${t("button.event", { event: button.event })}</p>`}</${Ask}>`
     }</li>`;
 }
 

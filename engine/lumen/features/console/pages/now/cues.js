@@ -2,7 +2,7 @@
 // Cues of an author: any motion, posture, state or event, whatever the behaviour is doing.
 /** @import { Robot } from "../types" */
 import { command } from "../commands.js";
-import { Part, html, t, useState, typed } from "../ui.js";
+import { Part, Select, html, t, useState, typed } from "../ui.js";
 
 /**
  * A motion, a posture or a state; `free` if its name is typed.
@@ -18,10 +18,7 @@ function Cue({ robot, kind, names, field, free = false }) {
     ${
       free
         ? html`<input value=${chosen} onInput=${typed(choose)} autocomplete="off" />`
-        : html`<select value=${chosen} onChange=${typed(choose)}>${names.map(
-            (name) => html`<option
-          value=${name} selected=${name === chosen}>${name}</option>`,
-          )}</select>`
+        : html`<${Select} value=${chosen} choose=${choose} options=${names.map((one) => [one, one])} />`
     }</label>
     <button>${t(`cue.${kind}.send`)}</button></form>`;
 }
@@ -44,10 +41,8 @@ function EventCue({ robot }) {
     command(robot.robot, "event", { event: name, data: body }, `${t("command.event")} ${name}`);
   };
   return html`<form class="cue" onSubmit=${send}><label class="grow"><span>${t("cue.event")}</span>
-      <select value=${name} onChange=${typed(choose)}>${(robot.events ?? []).map(
-        (one) => html`<option
-        value=${one} selected=${one === name}>${one}</option>`,
-      )}</select></label>
+      <${Select} value=${name} choose=${choose}
+        options=${(robot.events ?? []).map((one) => [one, one])} /></label>
     <label class="grow"><span>${t("cue.data")}</span><input class="code" value=${data}
       onInput=${typed(set)} aria-invalid=${wrong ? "true" : null} autocomplete="off"
       spellcheck=${false} /></label>

@@ -5,7 +5,7 @@ import { JOB, get, live } from "../live.js";
 import { Place, Values } from "../places.js";
 import { InEnglish, Quote, reasonOf, translated } from "../quoted.js";
 import { may } from "../session.js";
-import { Dialog, Part, clock, html, lineOf, t, useEffect, useState } from "../ui.js";
+import { Badge, Dialog, Part, clock, html, lineOf, t, useEffect, useState } from "../ui.js";
 import en from "../texts/en.js";
 import { isTrouble } from "./troubles.js";
 
@@ -34,7 +34,7 @@ const shownOf = (chain) =>
 
 /** @param {{ link: Cause }} props */
 function Link({ link }) {
-  return html`<li class="link"><p><span class="badge" data-state="kind">${t(`kind.${link.kind}`)}</span>
+  return html`<li class="link"><p><${Badge} state="kind">${t(`kind.${link.kind}`)}</${Badge}>
       ${" "}<${Quote} text=${link.text} named=${false} /></p>
     <p class="place">${clock(link.at)} <${Place} file=${link.file} line=${link.line} /></p>
     <${Values} values=${link.values} /></li>`;

@@ -8,6 +8,7 @@ import { SentenceDialog, sentencesOf } from "../sentence.js";
 import { may } from "../session.js";
 import {
   Part,
+  Select,
   Since,
   Usable,
   clock,
@@ -103,11 +104,8 @@ function SayForm({ robot }) {
         </label>
     ${
       languages.length > 1 &&
-      html`<label><span>${t("language")}</span><select value=${spoken} onChange=${typed(choose)}>
-      ${languages.map(
-        (one) => html`<option value=${one}
-        selected=${one === spoken}>${languageName(one)}</option>`,
-      )}</select></label>`
+      html`<label><span>${t("language")}</span><${Select} value=${spoken} choose=${choose}
+        options=${languages.map((one) => [one, languageName(one)])} /></label>`
     }
     <button class="strong">${t("say")}</button>
     <button type="button" class="keep-sentence" onClick=${keep}>${t("prepared.keep")}</button></form>

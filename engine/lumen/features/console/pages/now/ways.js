@@ -4,7 +4,7 @@
 import { Place, Values } from "../places.js";
 import { Quote, inPageLanguage } from "../quoted.js";
 import { may } from "../session.js";
-import { Part, html, t } from "../ui.js";
+import { Badge, Part, html, t } from "../ui.js";
 import { next } from "./next.js";
 
 /** @param {{ guard: Condition, open: boolean }} props */
@@ -19,7 +19,7 @@ function Way({ way }) {
   const again = way.guard && way.why.includes(way.guard.text); // the reason is the guard, which is below
   return html`<li class="way" data-open=${way.open}>
     <p class="way-head">
-      <span class="badge" data-state=${way.open ? "open" : "closed"}>${t(way.open ? "way.open" : "way.closed")}</span>
+      <${Badge} state=${way.open ? "open" : "closed"}>${t(way.open ? "way.open" : "way.closed")}</${Badge}>
       <span><b>${inPageLanguage(way.event) || t("way.always")}</b>${" → "}
         ${way.targets?.length ? way.targets.join(", ") : t("way.stays")}</span></p>
     ${way.why && !again && html`<p class="why-text"><${Quote} text=${way.why} /></p>`}

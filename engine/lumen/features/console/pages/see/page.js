@@ -2,7 +2,7 @@
 // See: what the robot's camera sees with what the eyes found in it, and the robot in its hall.
 import { robotOf } from "../live.js";
 import { Quote } from "../quoted.js";
-import { Part, html, kept, keep, t, useEffect, useRedraw, useRef, useState } from "../ui.js";
+import { Choice, Part, html, kept, keep, t, useEffect, useRedraw, useRef, useState } from "../ui.js";
 import { Hall } from "./hall.js";
 
 const WIDTH = 320,
@@ -61,12 +61,9 @@ export default function SeePage({ name }) {
     keep("lumen.see", one);
     set(one);
   };
-  return html`<div class="page-head"><h1>${t("page.see")}</h1><fieldset class="choice">
-    <legend class="hidden">${t("page.see")}</legend>${["camera", "hall"].map(
-      (one) => html`<label>
-      <input type="radio" name="view" value=${one} checked=${view === one} onChange=${() => choose(one)} />
-        <span>${t(`see.${one}`)}</span></label>`,
-    )}</fieldset></div>
+  return html`<div class="page-head"><h1>${t("page.see")}</h1><${Choice} legend=${t("page.see")}
+      name="view" titled=${false} value=${view} choose=${choose}
+      options=${["camera", "hall"].map((one) => [one, t(`see.${one}`)])} /></div>
     ${
       view === "camera"
         ? html`<${Camera} name=${name} />`
