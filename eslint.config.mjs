@@ -7,7 +7,7 @@ export default [
   { ignores: ["**/vendor/**", "**/*.d.ts"] },
   js.configs.recommended,
   {
-    files: ["engine/lumen/features/console/pages/**/*.js"],
+    files: ["engine/lumen/features/console/pages/**/*.js", "tests/features/console/examples/*.js"],
     languageOptions: { globals: { ...globals.browser, lumen: "readonly" }, sourceType: "module" },
     linterOptions: { reportUnusedDisableDirectives: "error" },
     rules: {

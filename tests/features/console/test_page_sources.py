@@ -10,14 +10,15 @@ from tests.fetched import fetched
 from tests.guarded import run_guarded
 
 PAGES = ROOT / "engine/lumen/features/console/pages"
+EXAMPLES = ROOT / "tests/features/console/examples"
 OTHERS, TEXTS = PAGES / "vendor", PAGES / "texts"
 LONGEST = 120
 STRING = re.compile(r'"(?:[^"\\]|\\.)*"')
 
 
 def sources(*endings: str) -> Iterator[Path]:
-    """Yield our own files with one of these endings."""
-    for file in sorted(PAGES.rglob("*")):
+    """The files of our own with one of these endings, of the pages and of the examples."""
+    for file in sorted([*PAGES.rglob("*"), *EXAMPLES.iterdir()]):
         if file.suffix in endings and OTHERS not in file.parents:
             yield file
 
@@ -44,7 +45,7 @@ def test_code_and_css_have_the_layout_of_prettier() -> None:
 def test_code_keeps_the_rules_of_eslint() -> None:
     """The types are checked in test_page_types.py."""
     eslint = fetched("eslint") / "node_modules/eslint/bin/eslint.js"
-    line = ["node", str(eslint), "--max-warnings", "0", "--format", "json", str(PAGES)]
+    line = ["node", str(eslint), "--max-warnings", "0", "--format", "json", str(PAGES), str(EXAMPLES)]
     done = run_guarded(line, cwd=ROOT, capture_output=True, text=True)
     assert done.stderr == ""
     files = json.loads(done.stdout)

@@ -27,7 +27,7 @@ def faults(config: Path) -> list[str]:
     line = ["node", str(compiler), "--project", str(config), "--pretty", "false"]
     done = run_guarded(line, cwd=ROOT, capture_output=True, text=True)
     assert done.stderr == ""
-    return done.stdout.splitlines()
+    return str(done.stdout).splitlines()
 
 
 def faults_of(code: str, folder: Path) -> list[str]:
