@@ -27,6 +27,8 @@ class LastReload(NamedTuple):
     """The first line of the report for people."""
 
 
+SKILL_STATES = "skill_states"
+"""The field of a presence, and of a status, with the states of the skills that a process performs."""
 NOTHING_SAID: Mapping[str, Any] = {}
 
 
@@ -45,7 +47,8 @@ def status_of(
 
     Times are ISO 8601 in UTC on the exhibition's clock; those of stops and reloads, which people make, are real.
     Unknown values are None: the `visitor` before they give a name, the `battery` and the `ears` of a robot that has
-    none. `said` has the state of the `ears`, and the project's own `modules`, which the status lacks if there are none.
+    none. `said` has the state of the `ears`, and the project's own `modules` and `skills`, which the status lacks if
+    there are none; the skills that another process performs are in its presence.
     """
     return {
         "robot": project.robot,
@@ -64,6 +67,7 @@ def status_of(
         "bundle": project.hash,
         "last_reload": _reload(reloaded) if reloaded else None,
         **({"modules": [*modules]} if (modules := said.get("modules")) else {}),
+        **({SKILL_STATES: dict(skills)} if (skills := said.get("skills")) else {}),
     }
 
 

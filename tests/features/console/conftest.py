@@ -7,16 +7,19 @@ from typing import Any
 
 import pytest
 
+from lumen.robot.bounded_robot import BoundedRobot
 from lumen.run.exhibition import Exhibition
+from lumen.run.making.modules import ModulesPlan
 from lumen.run.plan import Plan
 from lumen.run.recovery.run_directory import RunDirectory
 from lumen.run.recovery.startup import startup_project
-from lumen.run.setup import set_up
+from lumen.run.setup import set_up, set_up_with
 from tests.features.console.chromium import Chromium
 from tests.features.console.house import House
 from tests.features.console.pages import Browser, Served
 from tests.features.console.viewer import Viewer
 from tests.rabbitmq import RabbitMQ
+from tests.seams.test_joints import Obedient
 from tests.tour.conftest import copied, copy, project
 from tests.waiting import until
 
@@ -24,17 +27,21 @@ __all__ = ["copy", "project"]
 
 
 class Hosted:
-    """An exhibition of a project on its own bus or a broker's, with a recording robot, in real time, until closed."""
+    """An exhibition of a project on its own bus or a broker's, with a recording robot, in real time, until closed.
 
-    def __init__(self, root: Path, bus: str = "memory://") -> None:
+    With `real_skills` another robot runs the code of skills, and the project's own modules are started.
+    """
+
+    def __init__(self, root: Path, bus: str = "memory://", *, real_skills: bool = False) -> None:
         self.root, self._ending = root, threading.Event()
         self.directory = RunDirectory(root)
         loaded = startup_project(root, self.directory, last_good=False, warn=print)
-        self.exhibition = Exhibition(
-            Plan(
-                loaded, set_up("recording", loaded, "1"), bus, options={"directory": self.directory, "reload": "manual"}
-            )
-        )
+        options: dict[str, Any] = {"directory": self.directory, "reload": "manual"}
+        if real_skills:
+            options |= {"modules": ModulesPlan()}
+        robot = BoundedRobot(Obedient(), loaded.body)
+        setup = set_up_with(robot, None, 1.0) if real_skills else set_up("recording", loaded, "1")
+        self.exhibition = Exhibition(Plan(loaded, setup, bus, options=options))
         self.directory.open(self.exhibition.node.bus, bus, loaded)
         self.exhibition.start()
         self._begun = self._state

@@ -103,6 +103,13 @@ def story(pipe: AnswerPipe, root: Path, robot: str, position: int, visitor: str,
     yield orjson.dumps({"file": kept.file.as_posix(), "remark": kept.remark})
 
 
+def skills(pipe: AnswerPipe, root: Path, robot: str, hash: str) -> Iterator[bytes]:
+    """Answer with the manifests of the project's skills."""
+    from lumen.features.console.own_skills import skills_of
+
+    yield orjson.dumps(skills_of(root, robot, hash))
+
+
 def sentence(pipe: AnswerPipe, root: Path, robot: str, said: dict[str, Any], hint: dict[str, Any]) -> Iterator[bytes]:
     """Answer with the places in the saved files at which a sentence that the robot said may be written."""
     from lumen.features.console.written_sentences import SaidSentence, places
@@ -136,7 +143,7 @@ def poses(pipe: AnswerPipe, root: Path, robot: str) -> Iterator[bytes]:
 
 JOBS: dict[str, Callable[..., Iterable[bytes]]] = {
     "day": day, "entries": entries, "why": why, "replay": replay, "saying": saying, "story": story, "chart": chart,
-    "sentence": sentence, "wording": wording, "shape": shape, "poses": poses,
+    "skills": skills, "sentence": sentence, "wording": wording, "shape": shape, "poses": poses,
 }  # fmt: skip
 
 

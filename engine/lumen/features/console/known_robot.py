@@ -11,6 +11,7 @@ from lumen.features.console.entry_ring import EntryRing
 from lumen.language.iso_time import iso_time, time_of
 from lumen.language.numbers import is_number
 from lumen.run.presence import HERE, LEAVES, LOST_AFTER
+from lumen.run.status import SKILL_STATES
 
 MAX_NAMES = 50
 """The most names that are kept; a robot may still say the name of a visitor who has left."""
@@ -40,6 +41,7 @@ SILENT_AFTER = 2.5
 CLOCK_TOLERANCE = 0.7
 """Smaller changes of a clock are ignored [s]: they may be the delay of an answer."""
 MAX_PROCESSES = 30
+MAX_SKILLS = 200
 SEEN_FOR = 1.5
 """A face is shown for this long after it was last seen [s]."""
 MAX_NAME = 100
@@ -131,8 +133,9 @@ class KnownRobot:
                 self._processes.pop(min(self._processes, key=lambda one: self._processes[one]["at"]))
             known = self._processes[session] = {"parts": parts, "since": iso_time(time.time()), "state": ""}
             known |= {"host": str(body.get("host", ""))[:60], "process": body.get("process")}
-        if known["state"] != state or known["parts"] != parts:
-            known |= {"state": state, "parts": parts}
+        now = {"state": state, "parts": parts, "skills": _skill_states(body.get(SKILL_STATES))}
+        if any(known.get(key) != value for key, value in now.items()):
+            known |= now
             self.version += 1
         known |= {"heard": iso_time(time.time()), "at": time.monotonic()}
 
@@ -191,3 +194,14 @@ class KnownRobot:
 
     def _away(self, said: Mapping[str, Any]) -> bool:
         return time.monotonic() - float(said["at"]) > LOST_AFTER
+
+
+def _skill_states(told: object) -> dict[str, dict[str, Any]]:
+    """Return the states of skills in a presence message, without what is malformed."""
+    found: dict[str, dict[str, Any]] = {}
+    for name, one in list(told.items())[:MAX_SKILLS] if isinstance(told, Mapping) else ():
+        match one:
+            case {"state": str(state), "since": str(since), "crashes": int(crashes), "trouble": str(trouble)}:
+                texts = {"state": state[:20], "since": since[:40], "trouble": trouble[:300]}
+                found[str(name)[:60]] = {**texts, "crashes": crashes}
+    return found

@@ -112,6 +112,14 @@ def _posture(fields: Fields, keys: RobotKeys, by: str) -> Order:
     return order._replace(note=f"goes into the posture {parameter['postureName']}")
 
 
+def _skill(fields: Fields, keys: RobotKeys, by: str) -> Order:
+    name, arguments = text_in(fields, "name"), fields.get("arguments")
+    if not isinstance(arguments, dict | None):
+        raise UsageError("`arguments` must be an object, or be left out")
+    body = {"type": "skill", "method": "do", "parameter": {"skill": name, "arguments": arguments or {}}}
+    return _motion(body, keys.command)._replace(note=f"begins {name}")
+
+
 def _question(request: OperatorRequest, **fields: Any) -> Callable[[RobotKeys], Order]:
     return lambda keys: Order(keys.operator, request(**fields), SHORT, verdict_outcome)
 
@@ -159,6 +167,7 @@ NEEDS = {
     "say": Role.OPERATOR,
     "motion": Role.OPERATOR,
     "posture": Role.OPERATOR,
+    "skill": Role.OPERATOR,
     "goto": Role.OPERATOR,
     "autonomy": Role.OPERATOR,
     "model": Role.OPERATOR,
@@ -177,6 +186,7 @@ _MAKERS: dict[str, Callable[[Fields, RobotKeys, str], Order]] = {
     "say": _say,
     "motion": _play,
     "posture": _posture,
+    "skill": _skill,
     "event": _event,
     "goto": lambda fields, keys, by: _question(GOTO, state=text_in(fields, "state"), by=by)(keys),
     "mark": lambda fields, keys, by: _question(MARK, text=text_in(fields, "text", MAX_NAME, needed=False), by=by)(keys),

@@ -79,6 +79,7 @@ class Past:
             Route("/api/search", self._search),
             Route("/api/files", self._files),
             Route("/api/chart", self._chart),
+            Route("/api/skills", self._skills),
             Route("/api/passages", self._passage, methods=["POST"]),
             Route("/api/sayings", self._saying, methods=["POST"]),
             Route("/api/stories", self._story, methods=["POST"]),
@@ -196,6 +197,14 @@ class Past:
             raise DeniedError(400, ELSEWHERE)
         drawn = await self._jobs.do("chart", self.home(view), str(view.said.get("bundle") or ""))
         return Response(drawn, headers=NO_STORE, media_type="application/json")
+
+    async def _skills(self, request: Request) -> Response:
+        """Return the skills of the files that run, from their manifests."""
+        view = self.asked(request, Role.SHOW)
+        if not self.is_ours(view):
+            raise DeniedError(400, ELSEWHERE)
+        found = await self._jobs.do("skills", self.home(view), str(view.said.get("bundle") or ""))
+        return Response(found, headers=NO_STORE, media_type="application/json")
 
     async def _passage(self, request: Request) -> Response:
         """Save an unanswered question with its answer as a passage; it is then checked as any saved file."""

@@ -13,6 +13,7 @@ from lumen.robot.robot_routes import publish_on
 from lumen.run.live_behavior import LiveBehavior
 from lumen.run.parts.part import Part
 from lumen.run.services import Services
+from lumen.run.status import SKILL_STATES
 from lumen.upkeep.threads import WatchedThread
 
 LOOK_PERIOD = 0.5
@@ -45,9 +46,9 @@ class SkillsPart(Part):
 
     @property
     def said(self) -> Mapping[str, Any]:
-        """The hashes of the code of skills, by which the code of two houses can be compared."""
-        hashes = self.workshop.hashes
-        return {"skills": hashes} if hashes else {}
+        """The hashes of the code of skills, by which the code of two houses can be compared, and the skills' states."""
+        hashes, states = self.workshop.hashes, self.workshop.states
+        return {**({"skills": hashes} if hashes else {}), **({SKILL_STATES: states} if states else {})}
 
     def begin(self, now: float) -> None:
         self._begun = True

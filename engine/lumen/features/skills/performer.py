@@ -141,8 +141,8 @@ class _Performance:
     def _killed(self, reason: str) -> str:
         """Kill the program and report that; return the reported message."""
         self._process.kill(reason)
-        self._workshop.crashed(self._call.skill)
         done = "was killed" if isinstance(self._process, SkillProcess) else "is given up"
         message = f"{self._process.title} {done}: {reason}"
+        self._workshop.crashed(self._call.skill, message)
         self._workshop.report(self._call.skill, message)
         return message

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator
 from contextlib import closing, contextmanager, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import lumen
 from lumen.errors import RobotFailedError, RobotRefusedError
@@ -18,6 +18,7 @@ from lumen.features.skills.manifest import Skill
 from lumen.features.skills.module_call import ModuleAnswers, ModuleCall
 from lumen.features.skills.process import SkillProcess
 from lumen.features.skills.python_file import syntax_fault
+from lumen.language.iso_time import iso_time
 from lumen.language.projects import Project
 from lumen.ports import Bus, SkillCall
 from lumen.upkeep.ratelimit import Backoff
@@ -30,6 +31,11 @@ FIRST_PAUSE, LONGEST_PAUSE = 0.5, 30.0
 LOADING = 20.0
 """The time that the code of a skill may take to load [s]."""
 MAX_CODE_BYTES = 4_000_000
+MAX_TROUBLE = 200
+"""The most characters of a trouble in the states of skills."""
+RUNNING, READY, PAUSED, IDLE = "running", "ready", "paused", "idle"
+"""The states of a skill: a call is under way; its program waits for one; it is not started yet after a crash; it is
+started when it is needed."""
 
 _CHILD = "import sys; sys.path.append({engine!r}); from lumen.skills import serve; serve()"
 _ENGINE = str(Path(lumen.__file__).parents[1])
@@ -63,7 +69,29 @@ class _Bench:
     """The processes that perform calls."""
     backoff: Backoff = field(default_factory=lambda: Backoff(FIRST_PAUSE, LONGEST_PAUSE))
     again: float = 0.0
-    """The earliest start of a program after a crash [s, monotonic]."""
+    remote: int = 0
+    """The number of calls that a module performs now."""
+    crashes: int = 0
+    """The number of times that a program ended by itself or was killed."""
+    trouble: str = ""
+    """Why the last call failed, or its program was killed; empty after a call that was performed."""
+    since: float = field(default_factory=time.time)
+    """When its state last changed [s since 1970]."""
+    state: str = ""
+
+    def now(self) -> str:
+        """Return its state now, and note when it changed."""
+        if self.busy or self.remote:
+            state = RUNNING
+        elif any(one.alive for one in self.idle):
+            state = READY
+        elif self.again > time.monotonic():
+            state = PAUSED
+        else:
+            state = IDLE
+        if state != self.state:
+            self.state, self.since = state, time.time()
+        return state
 
     @property
     def skill(self) -> Skill:
@@ -86,7 +114,7 @@ class Workshop:
         report: Callable[[str, str], None],
         failed: Callable[[str, str], None] = lambda skill, reason: None,
     ) -> None:
-        self.project, self.bus, self.tell, self.report, self.failed = project, bus, tell, report, failed
+        self.project, self.bus, self.tell, self.report, self._failed = project, bus, tell, report, failed
         self._root = Path(project.root)
         self._answers = ModuleAnswers(project, bus)
         self._lock = threading.RLock()
@@ -143,6 +171,18 @@ class Workshop:
             found = {name: bench.code or bench.seen for name, bench in self._benches.items()}
         return {name: code.hash for name, code in found.items() if code}
 
+    @property
+    def states(self) -> dict[str, dict[str, Any]]:
+        """The state of each skill as JSON data, with its last trouble and how often its program crashed."""
+        with self._lock:
+            return {
+                name: {
+                    "state": bench.now(), "since": iso_time(bench.since), "crashes": bench.crashes,
+                    "trouble": bench.trouble,
+                }
+                for name, bench in self._benches.items()
+            }  # fmt: skip
+
     def processes(self, name: str) -> list[SkillProcess]:
         """Return the processes of a skill that have not ended."""
         with self._lock:
@@ -162,7 +202,7 @@ class Workshop:
         name = call.skill
         match call.row.details:
             case Skill("module", (module,)):
-                with closing(ModuleCall(self.project, self.bus, module, self._answers)) as remote:
+                with self._counted(name), closing(ModuleCall(self.project, self.bus, module, self._answers)) as remote:
                     yield remote
                 return
         with self._lock:
@@ -190,10 +230,33 @@ class Workshop:
                 elif process.alive:
                     _in_background(process.close)
 
-    def crashed(self, name: str) -> None:
+    @contextmanager
+    def _counted(self, name: str) -> Iterator[None]:
+        """Count a call that a module performs while it is under way."""
+        with self._lock:
+            bench = self._benches.get(name)
+            if bench:
+                bench.remote += 1
+        try:
+            yield
+        finally:
+            with self._lock:
+                if bench:
+                    bench.remote -= 1
+
+    def failed(self, name: str, reason: str) -> None:
+        """Note that a call of a skill failed, and why."""
+        with self._lock:
+            if bench := self._benches.get(name):
+                bench.trouble = reason[:MAX_TROUBLE]
+        self._failed(name, reason)
+
+    def crashed(self, name: str, reason: str = "") -> None:
         """Count a program that ended by itself or was killed: the next one is started after a pause."""
         with self._lock:
             if bench := self._benches.get(name):
+                bench.crashes += 1
+                bench.trouble = reason[:MAX_TROUBLE] or bench.trouble
                 bench.again = time.monotonic() + bench.backoff.next()
 
     def worked(self, name: str) -> None:
@@ -201,6 +264,7 @@ class Workshop:
         with self._lock:
             if bench := self._benches.get(name):
                 bench.backoff.reset()
+                bench.trouble = ""
 
     def close(self) -> None:
         """End all programs."""

@@ -1,5 +1,7 @@
 """Makers of the parts that serve the behaviour: its journal, forgetting, reload, and operators."""
 
+from typing import Any
+
 from lumen.journal.journal_writer import JournalWriter
 from lumen.motion.bounds import analyse
 from lumen.robot.person_hold import StoppedBy
@@ -16,7 +18,7 @@ from lumen.run.reload.reloader import Reloader, ReloadOptions
 from lumen.run.reload.saved_files import RecordsPart, ReloadPart
 from lumen.run.resuming import FreshStart, Resumption
 from lumen.run.services import Services
-from lumen.run.status import LastReload
+from lumen.run.status import SKILL_STATES, LastReload
 
 
 def journal(services: Services) -> None:
@@ -62,6 +64,10 @@ def operator(services: Services) -> OperatorPart:
     def marking() -> str:
         return next(filter(None, (part.marking() for part in services.node.parts)), "")
 
+    def skills() -> dict[str, Any]:
+        told = (part.said.get(SKILL_STATES) or {} for part in services.node.parts)
+        return {name: state for each in told for name, state in each.items()}
+
     def reloaded() -> LastReload | None:
         return reloader.last_reload if reloader else None
 
@@ -71,7 +77,11 @@ def operator(services: Services) -> OperatorPart:
         services[JournalWriter],
         services[RunRecords],
         RunState(
-            stopped, lambda: services.node.pace.realtime, reloaded, lambda: own_module_statuses(services.node.parts)
+            stopped,
+            lambda: services.node.pace.realtime,
+            reloaded,
+            lambda: own_module_statuses(services.node.parts),
+            skills,
         ),
         marking=marking,
         kept=directory.home.folder if directory and directory.home and services.lasts else None,

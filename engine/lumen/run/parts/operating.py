@@ -73,6 +73,8 @@ class RunState:
     """Returns the last reload; None if there was none."""
     modules: Callable[[], Sequence[Mapping[str, Any]]] = tuple
     """Returns the status of each of the project's own modules."""
+    skills: Callable[[], Mapping[str, Any]] = dict
+    """Returns the state of each of the project's skills that this process performs."""
 
 
 class OperatorPart(Part, Observer):
@@ -205,7 +207,7 @@ class OperatorPart(Part, Observer):
             stopped=self._run.stopped(),
             realtime=self._run.realtime(),
             reloaded=self._run.reloaded(),
-            said={"ears": self._ears, "modules": self._run.modules()},
+            said={"ears": self._ears, "modules": self._run.modules(), "skills": self._run.skills()},
         )
 
     def _moment(self) -> PresentMoment:

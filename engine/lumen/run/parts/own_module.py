@@ -65,13 +65,14 @@ class OwnModulePart(Part):
         self._heard, self._gone, self._known = -1.0, False, self._process is not None
         self._lost_at: float | None = None
         self._alive_at, self._since, self._next_presence = clock(), time.time(), 0.0
-        self._reason = ""
+        self._reason, self._starts = "", 0
 
     @property
     def status(self) -> dict[str, Any]:
-        """The program's state for `lumen status`: `here`, `lost` or `awaited`, since when, and why it was lost."""
+        """Its state for `lumen status`: `here`, `lost` or `awaited`, since when, why it was lost, and its restarts."""
         state = "lost" if self._lost_at is not None else "here" if self._heard >= 0 or self._running else "awaited"
-        return {"module": self.name, "state": state, "since": iso_time(self._since), "reason": self._reason or None}
+        told = {"module": self.name, "state": state, "since": iso_time(self._since), "reason": self._reason or None}
+        return {**told, "restarts": max(0, self._starts - 1)} if self._process else told
 
     def begin(self, now: float) -> None:
         self._alive_at, self._since = self._clock(), time.time()
@@ -113,6 +114,7 @@ class OwnModulePart(Part):
         ended = self._process.tick()
         self._print(self._process)
         if self._process.began != began:
+            self._starts += 1
             self._heard, self._gone, self._session = -1.0, False, uuid.uuid4().hex[:12]
         if ended:
             pause = max(0.0, self._process.next - self._clock())

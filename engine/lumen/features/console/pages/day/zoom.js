@@ -4,7 +4,7 @@ import { clock, html, t, useEffect, useRef, useState } from "../ui.js";
 const LEAST = 30e3,
   TIMES = 2,
   DRAG = 6,
-  SCROLLING = 400; // [ms], factor of a step, [px] until a press is a drag, [ms] for which a scrolled page goes on
+  SCROLLING = 400; // [ms], factor of a step, [px] until a press is a drag, [ms] in which a page still scrolls
 const EACH = [5, 10, 30, 60, 120, 300, 600, 900, 1800, 3600, 7200, 10800, 14400].map((seconds) => seconds * 1000);
 let scrolled = 0;
 addEventListener("scroll", () => (scrolled = Date.now()), { passive: true });
@@ -91,7 +91,7 @@ export function useZoom(bounds, moment) {
     onPointerCancel: release,
     onPointerLeave: release,
   };
-  /** The keys of the slider: + and − and 0, and an arrow that goes on at the end of the window. */
+  /** The keys of the slider: + and − and 0, and an arrow at the end of the window, which moves it. */
   const typed = (event, scrub, step) => {
     const by = { ArrowLeft: -step, ArrowDown: -step, ArrowRight: step, ArrowUp: step }[event.key];
     if (event.ctrlKey || event.metaKey || event.altKey) return;

@@ -9,6 +9,7 @@ import { Buttons } from "./buttons.js";
 import { BehaviorChart } from "./chart.js";
 import { Cues } from "./cues.js";
 import { Entries } from "./entries.js";
+import { OwnParts } from "./skills.js";
 import { Situation } from "./situation.js";
 import { States } from "./states.js";
 import { Lines, Talk } from "./talk.js";
@@ -30,7 +31,7 @@ export function NowPage({ name }) {
       <${Buttons} robot=${robot} /><${Approvals} robot=${robot} /><${Talk} robot=${robot} />
       <${Entries} robot=${robot} /></div>
       <div class="column"><${States} robot=${robot} /><${Ways} robot=${robot} /></div>
-      <div class="column"><${Body} robot=${robot} />
+      <div class="column"><${Body} robot=${robot} /><${OwnParts} robot=${robot} />
         ${may("author") && html`<${Usable} when=${isHere(robot)}><${Cues} robot=${robot} /></${Usable}>`}</div></div>
     <${BehaviorChart} robot=${robot} />`;
 }

@@ -90,6 +90,7 @@ export default [
   ["there is no command `{0}`: choose one of {1}", "tidak ada perintah `{0}`: pilih salah satu dari {1}"],
   ["`{0}` must be a string of {1} to {2} characters", "`{0}` harus berupa teks dengan {1} sampai {2} karakter"],
   ["`data` must be an object, or be left out", "`data` harus berupa objek, atau dihilangkan"],
+  ["`arguments` must be an object, or be left out", "`arguments` harus berupa objek, atau dihilangkan"],
   ["`level` must be `ask` or `alone`", "`level` harus `ask` atau `alone`"],
   ["`{0_}` must be true or false", "`{0}` harus true atau false"],
   ["nothing reacts to that event now", "saat ini tidak ada yang menanggapi peristiwa itu"],
