@@ -128,6 +128,7 @@ def test_now_lists_them_and_begins_a_skill(viewer: Viewer, own: Hosted, console:
     viewer.shows("Performed by the Python file skills/spray.py", "[data-skill=spray]")
     assert violations(viewer) == []
     viewer.click("[data-skill=spray] summary")
+    assert viewer.run("return document.querySelector('[data-skill=spray] select').value") == "left"
     viewer.click("[data-skill=spray] input[name=duration]")
     viewer.type("4s")
     viewer.click("[data-skill=spray] .begin-skill button")

@@ -55,6 +55,7 @@ def test_the_process_of_the_robot_performs_a_skill_of_the_brain(
 
     until(lambda: any(set(body.get("skills", ())) == {"spray"} for body in signs.bodies), shown=shown)
     until(lambda: any(body.get("follows") for body in signs.bodies), shown=shown)
+    assert any(body.get("skill_states", {}).get("spray", {}).get("state") == "idle" for body in signs.bodies)
 
     def met() -> bool:
         bus.publish(project.key_of("face"), {"x": 160, "y": 120})

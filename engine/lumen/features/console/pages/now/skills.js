@@ -98,6 +98,7 @@ function Skill({ robot, skill, told }) {
     ${told?.trouble && html`<p class="bad">${t("skill.trouble")} <${Quote} text=${told.trouble} named=${false} /></p>`}
     ${
       may("operator") &&
+      skill.kind && // its arguments are known
       html`<details><summary>${t("skill.try")}</summary><${Usable} when=${isHere(robot)}><${Begin} robot=${robot}
       skill=${skill} /></${Usable}></details>`
     }</li>`;
