@@ -1,15 +1,18 @@
-"""Measure the cost of a console: the latest tick of the exhibition, CPU time of both, and bytes for each page.
+"""The cost of a console, and the waiting times at its pages.
 
-    python benchmarks/console.py [--robot simulation|recording] [--clients 50] [--seconds S] [--rounds N]
+    python benchmarks/console.py [--only ticks|pages] [--robot simulation|recording] [--clients 50] [--seconds S]
+                                 [--rounds N] [--against FOLDER]
 
-The shipped tour runs with its visitor in real time; the console and the listening pages are separate processes. One
-of the pages never reads. The delay of a tick is the time since the 50th of a second at which it was due. The table
-has the 99th percentile, the latest tick, and the number of ticks that were a whole period late.
+Ticks: the shipped tour runs with its visitor in real time; the console and the listening pages are separate
+processes. One of the pages never reads. The delay of a tick is the time since the 50th of a second at which it was
+due. The table has the 99th percentile, the latest tick, and the number of ticks that were a whole period late.
 
 A busy machine has late ticks without a console, too, so they are measured in pairs: each run has a block without and
 a block with the console, in alternating order. `more` is the number of additional late ticks in the block with the
 console: the median of the runs, and the quartiles. If 0 is between the quartiles, the console causes no late ticks.
 Watchers request the camera's images, like pages that show them.
+
+Pages: console_pages.py describes them. They need Chromium. `--against` measures another checkout in the same run.
 """
 
 import argparse
@@ -29,6 +32,7 @@ from typing import NamedTuple
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
+from console_pages import print_pages, quartiles
 from tests.guarded import DEVNULL, PIPE, Guarded, temporary_folder
 
 import lumen
@@ -78,16 +82,24 @@ def main() -> None:
     parser.add_argument("--clients", type=int, default=50, help="pages that listen, of which one never reads")
     parser.add_argument("--seconds", type=float, default=8.0, help="how long a block is")
     parser.add_argument("--rounds", type=int, default=5, help="runs of each kind, a block with and one without each")
+    parser.add_argument("--only", choices=("ticks", "pages"), help="measure only these")
+    parser.add_argument("--against", type=Path, help="another checkout, whose pages are measured in turns with these")
     parser.add_argument("--listen", nargs=3, metavar=("PORT", "PAGES", "WATCHERS"), help=argparse.SUPPRESS)
     asked = parser.parse_args()
     if asked.listen:
         listen(*map(int, asked.listen))
         return
+    print(f"{platform.machine()}, {os.cpu_count()} cores, CPython {platform.python_version()}")
+    if asked.only != "pages":
+        print_ticks(asked)
+    if asked.only != "ticks":
+        print_pages(asked.rounds, asked.seconds, asked.against)
+
+
+def print_ticks(asked: argparse.Namespace) -> None:
+    """Measure the blocks, and print a table of them."""
     ticks = round(asked.seconds / TICK_PERIOD)
-    print(
-        f"{platform.machine()}, {os.cpu_count()} cores, CPython {platform.python_version()}, the {asked.robot} robot,"
-    )
-    print(f"medians of {asked.rounds} runs of a block without and one with it, {asked.seconds:g} s each\n")
+    print(f"ticks of the {asked.robot} robot: medians of {asked.rounds} runs of two blocks of {asked.seconds:g} s\n")
     kinds = {"nobody looks": (0, 0), "1 page": (1, 0), f"{asked.clients} pages": (asked.clients, 0)}
     if asked.robot == "simulation":
         kinds |= {f"and {WATCHERS} watchers": (asked.clients, WATCHERS)}
@@ -107,14 +119,6 @@ def main() -> None:
             watcher = f", a watcher {one.watcher / 1000:.1f} kB/s" if one.watcher else ""
             cpu = f"{one.exhibition:>11.1%}" + (f"{one.console:>9.1%}" if name == kind else "")
             print(f"{name:17}{ticks_told}{told:>19} {cpu}{page}{watcher}")
-
-
-def quartiles(values: list[float]) -> tuple[float, float, float]:
-    """Return the lower quartile, the median and the upper quartile."""
-    if len(values) < 2:
-        return (values[0],) * 3
-    first, middle, third = statistics.quantiles(values, n=4, method="inclusive")
-    return first, middle, third
 
 
 def paired(robot: str, lookers: tuple[int, int], seconds: float, *, console_first: bool) -> Pair:
