@@ -1,15 +1,22 @@
 """An operator's half hour: broken visitors, a bad edit, a fall, a robot and a broker that are gone.
 
 The operator sees and mends each problem on the pages, and uses nothing else. The test waits for each page as a person
-would. `pytest -m soak` plays as many scenes as fill half an hour.
+would. `pytest -m soak` plays as many scenes as fill half an hour, and also measures how soon a page in turn shows a
+fall, a lost process and a lost broker.
 """
 
+import sys
+from collections import defaultdict
 from collections.abc import Callable
+from itertools import cycle
 from random import Random
+from statistics import median, quantiles
+from time import time
 
 import pytest
 from selenium.common.exceptions import WebDriverException
 
+from lumen.run.presence import LOST_AFTER
 from tests.features.console.chromium import Chromium
 from tests.features.console.house import ROBOT, House
 from tests.waiting import until
@@ -21,6 +28,18 @@ LOOK = 0.25
 """Seconds between two looks at a page."""
 ROUNDS = 20
 """Rounds of all scenes in half an hour."""
+SOON = 1.0
+"""Seconds after which 9 of 10 alarms must be on a page."""
+PAGES = ("", "/day", "/files", "/see")
+ALARMS = """
+globalThis.alarmed = 0;
+(function look() {
+  const state = document.querySelector(".connection")?.dataset.state;
+  if (["alarm", "robot-lost", "robot-away"].includes(state)) globalThis.alarmed = Date.now() / 1000;
+  else requestAnimationFrame(look);
+})();
+"""
+"""Notes when the page's header shows an alarm [s since 1970]."""
 LEFT = "visitor.left: goodbye"
 NONSENSE = ("blub <b>blab</b>", "\u202e\u0000", "?" * 200, "{{ visitor }}", "'; drop table visits; --")
 BROKEN = (None, 7, [], {"result": 12}, {"x": "left"}, {"result": "a" * 100_000})
@@ -36,7 +55,20 @@ class Operator:
     """An operator who has only the pages."""
 
     def __init__(self, house: House, chromium: Chromium) -> None:
-        self._house, self._chromium = house, chromium
+        self._house, self._chromium, self._pages = house, chromium, cycle(PAGES)
+        self.times = defaultdict[str, list[float]](list)
+        """The delays of the alarms on pages, by kind of trouble [s]."""
+
+    def is_alarmed(self, kind: str, trouble: Callable[[], object], after: float = 0.0) -> None:
+        """Look at the next page, cause a trouble, and note the delay until the page shows an alarm, less `after`."""
+        self.looks_at(next(self._pages))
+        until(lambda: self.shown() and "live" in self._chromium.find(".connection").text, WAIT, every=LOOK)
+        self._chromium.run(ALARMS)
+        began = time()
+        trouble()
+        until(lambda: self._chromium.run("return globalThis.alarmed"), WAIT, every=LOOK)
+        self.times[kind].append(float(self._chromium.run("return alarmed")) - began - after)
+        self.looks_at()
 
     def looks_at(self, page: str = "") -> None:
         self._chromium.open(f"{self._house.address}robot/NAO{page}")
@@ -124,7 +156,7 @@ def a_bad_edit(house: House, operator: Operator) -> None:
 
 def a_fall(house: House, operator: Operator) -> None:
     operator.sees_it_in("watching")
-    operator.raises("fallen")
+    operator.is_alarmed("a fall", lambda: operator.raises("fallen"))
     operator.sees("The robot fell.", "Keep visitors away", "I fell")
     operator.presses(".notice button")
     operator.sees_no(".notice button")
@@ -136,7 +168,7 @@ def a_fall(house: House, operator: Operator) -> None:
 
 def a_robot_that_is_gone(house: House, operator: Operator) -> None:
     operator.sees_it_in("watching")
-    house.kill(ROBOT)
+    operator.is_alarmed("a lost process", lambda: house.kill(ROBOT), LOST_AFTER)
     operator.sees("the robot is not connected", "The process of NAO has ended", "lumen run --only robot")
     operator.sees_it_in("robot_lost")
     operator.rests("NOT SENT", "The robot does not rest")
@@ -149,7 +181,7 @@ def a_robot_that_is_gone(house: House, operator: Operator) -> None:
 
 def a_broker_that_is_gone(house: House, operator: Operator) -> None:
     assert house.broker
-    house.broker.kill()
+    operator.is_alarmed("a lost broker", house.broker.kill)
     operator.sees("NAO does not answer", "the broker")
     operator.rests("NOT SENT")
     house.broker.start()
@@ -204,3 +236,10 @@ def test_half_an_hour_of_it(house_on_its_broker: House, chromium: Chromium) -> N
             scene(house_on_its_broker, operator)
     operator.looks_at("/day")
     operator.sees("Visit 1", "Budi")
+    late = {}
+    for kind, times in operator.times.items():
+        most = quantiles(times, n=10, method="inclusive")[-1]
+        sys.stdout.write(f"{kind} is on a page after {median(times):.2f} s, 9 of 10 within {most:.2f} s\n")
+        if most > SOON:
+            late[kind] = most
+    assert not late
