@@ -14,6 +14,8 @@ REPORTED = [
     ("motions/reachy_mini/lief/calm.yaml", "did you mean `motions/reachy_mini/life/`?"),
     ("motions/nao/old/dance.yaml", "move the files that belong to the exhibition to motions/"),
     ("motions/life/nao/calm.yaml", "move the files to motions/nao/life/"),
+    ("motions/gestures/nao/guide.yaml", "move the files to motions/nao/gestures/"),
+    ("motions/nao/gesture/guide.yaml", "did you mean `motions/nao/gestures/`?"),
     ("motions/life/old/calm.yaml", "move the files that belong to the exhibition to motions/life/"),
     ("motions/gesture/guide.yaml", "did you mean `motions/gestures/`?"),
     ("motions/live/calm.yaml", "did you mean `motions/life/`?"),

@@ -14,7 +14,6 @@ from lumen.language.added_verbs import UNUSABLE
 from lumen.language.diagnostics import ERROR, WARNING, Code, Severity, has_errors
 from lumen.language.folders import FUNCTIONS_FOLDER, KNOWLEDGE_FOLDER, QUESTIONS_FOLDER, SAYINGS_FOLDER
 from lumen.language.json_paths import values_in
-from lumen.language.life import LifeStyle
 from lumen.language.machines import MachineDefinition
 from lumen.language.motions import MotionDefinition
 from lumen.language.projects import Project
@@ -52,6 +51,7 @@ from lumen.project.project_folders import (
     PASSAGES,
     WORDS_FOLDER,
     endings_in,
+    gestures_of,
     is_robots_own,
     kind_in,
     life_of,
@@ -406,24 +406,29 @@ def _strangers(found: ProjectDraft) -> None:
 def _accompany(found: ProjectDraft) -> None:
     """Build the styles of life and the gestures of speech; without a body, only check the shape of the files."""
     if body := found.body:
-        found.life = _life(found, body)
-        found.gestures = _built(_each(found, GESTURES_FOLDER, partial(build_gestures, body=body), around=body))
+        model = found.settings.model if found.settings else ""
+        life, gestures = partial(build_life, body=body), partial(build_gestures, body=body)
+        found.life, found.own_life = _with_own(found, life_of(model), LIFE_FOLDER, life, body)
+        found.gestures, found.own_gestures = _with_own(found, gestures_of(model), GESTURES_FOLDER, gestures, body)
     else:
         for folder in (LIFE_FOLDER, GESTURES_FOLDER):
             _each(found, folder, lambda data, report, name: None)
 
 
-def _life(found: ProjectDraft, body: Body) -> dict[str, LifeStyle]:
-    """Return the styles of life: those of the robot's own folder, and those for all robots that it does not replace."""
-    build = partial(build_life, body=body)
-    own = _built(_each(found, life_of(found.settings.model), build, around=body)) if found.settings else {}
-    found.own_life = frozenset(own)
-    replaced = {file: found.files[file] for name in own if (file := f"{LIFE_FOLDER}/{name}.yaml") in found.files}
+def _with_own(
+    found: ProjectDraft, folder: str, shared: str, build: Build[T], body: Body
+) -> tuple[dict[str, T], frozenset[str]]:
+    """Return what the robot's own folder describes, and what the folder for all robots does and it does not replace.
+
+    The second value has the names of the robot's own.
+    """
+    own = _built(_each(found, folder, build, around=body))
+    replaced = {file: found.files[file] for name in own if (file := f"{shared}/{name}.yaml") in found.files}
     left = {file: content for file, content in found.files.items() if file not in replaced}
-    _each(found, LIFE_FOLDER, lambda data, report, name: None, replaced)
-    shared = _built(_each(found, LIFE_FOLDER, build, left, around=body))
-    found.names[LIFE_FOLDER] = found.names[LIFE_FOLDER] | own.keys()
-    return {**shared, **own}
+    _each(found, shared, lambda data, report, name: None, replaced)
+    others = _built(_each(found, shared, build, left, around=body))
+    found.names[shared] = found.names[shared] | own.keys()
+    return {**others, **own}, frozenset(own)
 
 
 def _messages(found: ProjectDraft) -> None:

@@ -24,7 +24,7 @@ from lumen.language.words import Words
 from lumen.project.added_verbs import NO_VERBS, OwnVerbs
 from lumen.project.document_report import DocumentReport
 from lumen.project.looks import Looks
-from lumen.project.project_folders import LIFE_FOLDER, MAIN_FILE, WORDS_FOLDER, life_of
+from lumen.project.project_folders import GESTURES_FOLDER, LIFE_FOLDER, MAIN_FILE, WORDS_FOLDER, gestures_of, life_of
 from lumen.project.settings import Settings
 
 
@@ -72,6 +72,8 @@ class ProjectDraft:
     """The names of the motions in motions/MODEL/, which are for this robot alone."""
     own_life: frozenset[str] = frozenset()
     """The names of the styles of life in motions/MODEL/life/, which are for this robot alone."""
+    own_gestures: frozenset[str] = frozenset()
+    """The names of the libraries of gestures in motions/MODEL/gestures/, which are for this robot alone."""
     beside: dict[str, Any] = field(default_factory=dict)
     """The settings in files of the root folder other than lumen.yaml, by the file's name."""
     today: date | None = None
@@ -107,11 +109,13 @@ class ProjectDraft:
         return all(name in self.behaviors and self.report("behaviors", name).whole for name in names)
 
     def report(self, folder: str, name: str) -> DocumentReport:
-        """Return the report of `FOLDER/NAME.yaml`; of a motion or style of life, that of this robot's own file."""
+        """Return the report of `FOLDER/NAME.yaml`; of motions, gestures and life, that of this robot's own file."""
         if folder == "motions" and name in self.own_motions and self.settings:
             folder = f"motions/{self.settings.model}"
         elif folder == LIFE_FOLDER and name in self.own_life and self.settings:
             folder = life_of(self.settings.model)
+        elif folder == GESTURES_FOLDER and name in self.own_gestures and self.settings:
+            folder = gestures_of(self.settings.model)
         elif folder == KNOWLEDGE_FOLDER:
             return self.reports[self.knowledge[name].file]
         return self.reports[f"{folder}/{name}.yaml"]

@@ -11,7 +11,16 @@ from lumen.project.chosen_model import choice
 from lumen.project.chosen_robot import CHOSEN_ROBOT, as_robot
 from lumen.project.common_words import with_common_words
 from lumen.project.kept_contents import KeptContents
-from lumen.project.project_folders import FLEET_FILE, KINDS, MAIN_FILE, MOTIONS, endings_in, is_robots_own, life_of
+from lumen.project.project_folders import (
+    FLEET_FILE,
+    KINDS,
+    MAIN_FILE,
+    MOTIONS,
+    endings_in,
+    gestures_of,
+    is_robots_own,
+    life_of,
+)
 from lumen.upkeep.regular_files import MEGABYTE
 
 MAX_FILE_BYTES = 4_000_000
@@ -108,7 +117,7 @@ def fingerprint(files: Mapping[str, bytes]) -> str:
 
 
 def _robots_own(root: Path) -> list[str]:
-    """Return the folders in motions/, each with the motions of one robot, and those in them with its styles of life."""
+    """Return the folders in motions/, each with the motions of one robot, and those with its life and gestures."""
     try:
         listed = sorted(os.listdir(root / MOTIONS))
     except OSError:
@@ -118,7 +127,7 @@ def _robots_own(root: Path) -> list[str]:
     own = [name for name in shown if is_robots_own(f"{MOTIONS}/{name}")]
     return [
         *(f"{MOTIONS}/{name}" for name in shown),
-        *(life_of(name) for name in own if os.path.isdir(root / life_of(name))),
+        *(each for name in own for each in (life_of(name), gestures_of(name)) if os.path.isdir(root / each)),
     ]
 
 

@@ -79,6 +79,11 @@ def life_of(model: str) -> str:
     return f"{MOTIONS}/{model}/{PurePosixPath(LIFE_FOLDER).name}"
 
 
+def gestures_of(model: str) -> str:
+    """Return the folder with the libraries of gestures of one robot, by the name of its model."""
+    return f"{MOTIONS}/{model}/{PurePosixPath(GESTURES_FOLDER).name}"
+
+
 def kind_in(folder: str) -> str:
     """Return the kind of file in a folder of a project; empty for a folder of no kind."""
     return KINDS.get(_shared(folder), "")
@@ -87,8 +92,10 @@ def kind_in(folder: str) -> str:
 def _shared(folder: str) -> str:
     """Return `motions` or `motions/life` for a robot's own folder of such files; any other folder is unchanged."""
     above = folder.rpartition("/")[0]
-    if is_robots_own(above) and folder == life_of(PurePosixPath(above).name):
-        return LIFE_FOLDER
+    if is_robots_own(above):
+        model = PurePosixPath(above).name
+        shared = {life_of(model): LIFE_FOLDER, gestures_of(model): GESTURES_FOLDER}
+        return shared.get(folder, folder)
     return MOTIONS if is_robots_own(folder) else folder
 
 

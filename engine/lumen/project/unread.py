@@ -12,6 +12,7 @@ from lumen.project.misplaced import listed_in, misnamed_in
 from lumen.project.project_folders import (
     ALL_FOLDERS,
     FILE_KINDS,
+    GESTURES_FOLDER,
     KINDS,
     LIFE_FOLDER,
     MAIN_FILE,
@@ -21,6 +22,7 @@ from lumen.project.project_folders import (
     PROJECT_FOLDERS,
     SKILLS,
     endings_in,
+    gestures_of,
     is_robots_own,
     kind_in,
     life_of,
@@ -110,13 +112,15 @@ def _first(root: Path, folder: str, endings: tuple[str, ...], depth: int, look: 
 def _home_hint(folder: str, models: Collection[str]) -> str:
     """Return what to do with the files of a folder that is not read."""
     above, _, name = folder.rpartition("/")
-    if above == LIFE_FOLDER and name in models:
-        return f"move the files to {life_of(name)}/"
+    if above in (LIFE_FOLDER, GESTURES_FOLDER) and name in models:
+        own = life_of(name) if above == LIFE_FOLDER else gestures_of(name)
+        return f"move the files to {own}/"
     if is_robots_own(folder):
         return robots_own_hint(name, models)
     inside = {PurePosixPath(path).name: path for path in ALL_FOLDERS if str(PurePosixPath(path).parent) == above}
     if is_robots_own(above):
-        inside = {PurePosixPath(life_of(name)).name: life_of(PurePosixPath(above).name)}
+        robot = PurePosixPath(above).name
+        inside = {PurePosixPath(each).name: each for each in (life_of(robot), gestures_of(robot))}
     if near := nearest(name, inside):
         return f"did you mean `{inside[near]}/`?"
     known = {PurePosixPath(path).name: path for path in KINDS}
@@ -191,5 +195,6 @@ def _robot_of(folder: str) -> str:
 
 def _has_own(root: Path, folder: str) -> bool:
     """Return True if a robot's folder has files that are read with the project, whether or not they are used."""
-    own = (folder, life_of(PurePosixPath(folder).name))
+    robot = PurePosixPath(folder).name
+    own = (folder, life_of(robot), gestures_of(robot))
     return any(name.endswith(".yaml") for each in own for name in listed_in(root, each))

@@ -70,6 +70,22 @@ def test_the_example_is_sound_and_its_story_passes() -> None:
     assert {"head_z", "head_roll"} <= project.life["calm"].amplitudes.keys()
 
 
+def test_a_robots_own_gestures_replace_those_of_the_same_name(tmp_path: Path) -> None:
+    folder = copied_project(ROOT, tmp_path / "tour")
+    (folder / "motions/nao/gestures").mkdir(parents=True)
+    nod = "{for: beat, stroke: {takes: 400ms, roles: {head.pitch: 0.1}}}"
+    own = folder / "motions/nao/gestures/guide.yaml"
+    own.write_text(f"gestures: {{dip: {nod}}}\n")
+    (own.parent / "more.yaml").write_text(f"gestures: {{dip: {nod.replace('0.1', '9')}}}\n")
+    found = [(str(d.place), d.code) for d in lumen.check(folder) if "gestures/" in d.place.file]
+    assert found == [("motions/nao/gestures/more.yaml:1:72", "out-of-reach")]
+    (own.parent / "more.yaml").unlink()
+    gestures = lumen.load(folder).gestures
+    assert [gesture.name for gesture in gestures["guide"].gestures] == ["dip"]
+    own.parent.parent.rename(folder / "motions/pepper/nao")
+    assert len(lumen.load(folder).gestures["guide"].gestures) > 20
+
+
 def test_the_motions_of_the_example_are_the_shipped_ones() -> None:
     for file in matching(EXAMPLE / "motions", "*.yaml"):
         shipped = (ROOT / "motions/reachy_mini" / file.name).read_text()
