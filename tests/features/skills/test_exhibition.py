@@ -144,6 +144,18 @@ def test_a_story_on_a_robot_that_performs_skills_prints_that_it_does_not(tmp_pat
     assert list(printed.values()) == [said, []]
 
 
+def test_a_robot_that_gets_another_name_at_the_next_start_still_runs_the_code(tmp_path: Path) -> None:
+    root = project_in(tmp_path, SHORT)
+    with lumen.open(root, robot=Obedient()) as exhibition:
+        edit(root, "lumen.yaml", "name: NAO", "name: ANA")
+        assert exhibition.reload().verdict == "applied"
+        assert exhibition.project.robot == "NAO"
+        meet(exhibition)
+        live(exhibition, lambda: "sprayed" in exhibition.configuration)
+        assert threads("lumen-program-spray")
+        assert exhibition.context == {"litres": 0.2}
+
+
 def test_a_skill_without_an_exhibition_is_pretended_with_a_warning(
     tmp_path: Path, caplog: pytest.LogCaptureFixture
 ) -> None:

@@ -73,4 +73,5 @@ RESTART_FIELDS: Mapping[str, str] = {
 def live(old: Project, new: Project) -> Project:
     """Return the new bundle, but with the old values of everything that needs a restart, such as `RESTART_FIELDS`."""
     fixed = {name: getattr(old, name) for name in RESTART_FIELDS}
-    return replace(new, **fixed, sections=live_sections(old, new))
+    verbs = {name: row._replace(robot=old.robot) for name, row in new.verbs.items()}
+    return replace(new, **fixed, verbs=verbs, sections=live_sections(old, new))
