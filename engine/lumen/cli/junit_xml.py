@@ -9,7 +9,7 @@ _FORBIDDEN = re.compile("[^\t\n\u0020-\u007e\u00a0-\ud7ff\ue000-\ufffd\U00010000
 
 
 class JunitFailure(NamedTuple):
-    """Why a case failed: one line, and the details."""
+    """The reason why a case failed: one line, and the details."""
 
     message: str
     details: str

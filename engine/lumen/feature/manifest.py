@@ -298,7 +298,7 @@ class Exporter(NamedTuple):
 
 
 class Phase(IntEnum):
-    """When a part of an exhibition is made, and ticked: those of a lower phase come first."""
+    """The phase in which a part of an exhibition is made and ticked; parts of a lower phase come first."""
 
     RECORD = auto()
     """Parts that receive everything that the others report."""

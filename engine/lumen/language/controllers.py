@@ -286,7 +286,7 @@ CONTROLLER_EVENT = "controller."
 
 @dataclass(frozen=True, slots=True)
 class TrackingSettings:
-    """How joints follow a face, and what they do when it is lost."""
+    """The settings by which joints follow a face, and search for it after they lose it."""
 
     speed: float = 0.3
     """The fraction of the joints' maximum speed."""

@@ -31,7 +31,7 @@ NodePath = tuple[str | int, ...]
 
 
 class Severity(StrEnum):
-    """How serious a finding is."""
+    """The severity of a finding."""
 
     ERROR = "error"
     WARNING = "warning"

@@ -36,7 +36,7 @@ class FunctionDefinition:
 
     @property
     def signature(self) -> str:
-        """How the function is called: `greeting(name, hour)`."""
+        """The function's name with its arguments, as in a call: `greeting(name, hour)`."""
         return f"{self.name}({', '.join(self.parameters)})"
 
     def described(self, language: str) -> str:

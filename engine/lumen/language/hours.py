@@ -21,5 +21,5 @@ class Schedule:
     """The schedule as the author wrote it."""
 
     def holds(self, day: date) -> bool:
-        """Return True if that is one of its days."""
+        """Return True if the schedule applies to that day."""
         return not (self.weekdays or self.dates) or day.weekday() in self.weekdays or day in self.dates

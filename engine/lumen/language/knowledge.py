@@ -32,7 +32,7 @@ class Passage:
         return not self.who or robot in self.who
 
     def is_past(self, today: date) -> bool:
-        """Return True if the last day on which it is true is over."""
+        """Return True if the last day on which the passage is true is over."""
         return self.until is not None and self.until < today
 
 

@@ -86,7 +86,7 @@ class Transition:
 
     @property
     def timed(self) -> bool:
-        """True if a timer of its state selects it instead of an event's name."""
+        """True if a timer of the transition's state selects the transition, instead of an event's name."""
         return self.delay is not None or self.schedule is not None
 
     @property

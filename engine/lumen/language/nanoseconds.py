@@ -17,7 +17,7 @@ def nanoseconds(seconds: float) -> int:
 
 
 def in_seconds(nanoseconds: int) -> float:
-    """Return that time [s]; `nanoseconds` is its exact inverse for the first hundred days."""
+    """Return a time in nanoseconds in [s]; `nanoseconds` is its exact inverse for the first hundred days."""
     return nanoseconds / NANOSECONDS
 
 

@@ -31,7 +31,7 @@ class OperatorRequest:
 
     @property
     def schema(self) -> dict[str, Any]:
-        """The JSON Schema (2020-12) of its body."""
+        """The JSON Schema (2020-12) of the request's body."""
         return {
             "type": "object",
             "properties": {"ask": {"const": self.ask}, **self.fields},

@@ -65,7 +65,7 @@ class Base:
 
     @property
     def row(self) -> BaseRow:
-        """The row of its kind."""
+        """The feature's row of the base's `kind`."""
         row: BaseRow = table("bases")[self.kind]
         return row
 

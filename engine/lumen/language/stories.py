@@ -71,7 +71,7 @@ class Approve:
 
 @dataclass(frozen=True, slots=True)
 class SetAutonomy:
-    """`operator: {autonomy: alone}` or `ask`: whether transitions with `approve` are taken without a person."""
+    """`operator: {autonomy: alone}` or `ask`: transitions with `approve` need no person any more, or need one."""
 
     level: Autonomy
 

@@ -93,7 +93,7 @@ def build_likes(
 
 
 class _Builder:
-    """Reads one file; the joints come first because everything else refers to them."""
+    """Reads one body file; the joints come first because everything else refers to them."""
 
     def __init__(self, data: Mapping[str, Any], report: DocumentReport) -> None:
         self.data, self.report = data, report

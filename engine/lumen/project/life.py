@@ -106,7 +106,7 @@ def build_life(data: Any, report: DocumentReport, *, name: str, body: Body) -> L
 
 
 class _LifeReader:
-    """Reads one file."""
+    """Reads one file of a style of life."""
 
     def __init__(self, report: DocumentReport, body: Body, units: JointUnits) -> None:
         self._report, self._body, self._units = report, body, units

@@ -27,7 +27,7 @@ def build_variables(data: Mapping[str, Any], report: DocumentReport, side: str) 
 
 
 class _Variables:
-    """Reads one side of a controller."""
+    """Reads the inputs or the outputs of one controller."""
 
     def __init__(self, data: Mapping[str, Any], report: DocumentReport, side: str) -> None:
         self.data, self.report, self.side = data, report, side

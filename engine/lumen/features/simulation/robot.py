@@ -293,7 +293,7 @@ class SimulatedRobot(ExecutingRobot):
         self._skill_runner.set_ends(ends)
 
     def place(self, visitor: Visitor | None) -> None:
-        """Put the visitor there, or remove it with None."""
+        """Put the visitor at this place, or remove the visitor with None."""
         self.figure.place(visitor)
 
     def face(self) -> tuple[float, float] | None:

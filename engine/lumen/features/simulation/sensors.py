@@ -34,7 +34,7 @@ class MeanRates:
         self._begun = False
 
     def feel(self) -> tuple[float, float, float]:
-        """Return the rates of rolling right, pitching forward and turning left; 0 in the first period."""
+        """Return the rates of rolling right, pitching forward and turning left [rad/s]; 0 in the first period."""
         if self._axes is not None:
             self._before, self._now = self._now, self._before
             mujoco.mju_mat2Quat(self._now, self._axes)

@@ -73,7 +73,7 @@ def plain_phrases(table: Mapping[str, Iterable[str]], *, anyhow: bool = False) -
 
 
 def plain_properties(machine: MachineDefinition) -> dict[str, dict[str, Any]]:
-    """Return the data of `properties`."""
+    """Return the properties of a machine as the data under `properties`."""
     found = {}
     for one in machine.properties:
         conditions = {"always": one.always, "whenever": one.whenever, "eventually": one.eventually}

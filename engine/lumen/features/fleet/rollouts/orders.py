@@ -18,7 +18,7 @@ class DesiredState:
     term: int
     """The number of the centre's term, which grows when a centre takes over from another."""
     version: int
-    """Counts the centre's orders."""
+    """The number of the order in this term."""
     house: str
     robots: Mapping[str, str] = field(default_factory=dict)
     """A hash, or `!HASH`, by the robot's name."""

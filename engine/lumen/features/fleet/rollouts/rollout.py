@@ -1,7 +1,7 @@
 """A rollout: it gives a bundle to more and more robots, or withdraws it from all of them.
 
 The invariant, whatever is late, lost, killed or duplicated: no more robots run an unproved bundle than the present step
-allows. So a robot that was given the bundle counts until it has reported that it is back.
+allows. Therefore a robot that was given the bundle counts until it has reported another bundle.
 """
 
 from collections.abc import Iterable

@@ -51,9 +51,9 @@ class CentreState:
     centre: str
     """The centre's id."""
     term: int = 1
-    """Counts the centres that took over from each other."""
+    """The number of the centre's term, which grows when a centre takes over from another."""
     version: int = 0
-    """Counts the orders of a term."""
+    """The number of the last order in this term."""
     wanted: Mapping[str, str] = field(default_factory=dict)
     """The bundle that each robot should run (a hash, or `!HASH`), by HOUSE/ROBOT."""
     exposed: Mapping[str, tuple[str, int]] = field(default_factory=dict)
