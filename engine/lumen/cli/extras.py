@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 from lumen.feature import rows
 from lumen.project.broken_features import called
 
-if TYPE_CHECKING:  # # not at run time: `lumen lint` of unchanged files loads none of them
+if TYPE_CHECKING:  # not at run time: `lumen lint` of unchanged files loads none of them
     from lumen.language.projects import Project
     from lumen.language.stories import Story
     from lumen.run.linting.findings import Findings

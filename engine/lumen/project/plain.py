@@ -85,7 +85,10 @@ class _Reader:
 
 
 def parse_file(path: Path) -> tuple[Document | None, list[Diagnostic]]:
-    """Parse a file. Raises UsageError if it can't be read."""
+    """Return the document in a file, None if the file can't be parsed, and the findings.
+
+    Raises UsageError if the file can't be read.
+    """
     try:
         return parse(str(path), read_regular(path, MAX_FILE_BYTES))
     except OSError as error:

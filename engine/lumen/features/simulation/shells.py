@@ -116,7 +116,7 @@ class Ring:
 
 
 def _through(sections: Vertices, s: Vertices) -> Vertices:
-    """Return sections between the given ones, by a Catmull-Rom spline: Shape (len(s), columns)."""
+    """Return the sections at the shares `s` (0..1) of the length, by a Catmull-Rom spline: Shape (len(s), columns)."""
     position = s * (len(sections) - 1)
     i = np.minimum(position.astype(int), len(sections) - 2)
     t = (position - i)[:, None]

@@ -72,7 +72,10 @@ class WheelOdometry:
         self._lost = False
 
     def check(self, *places: Pose) -> None:
-        """Raise RobotError if the robot would be farther beyond the stage at one of these places than it already is."""
+        """Raise RobotError if the robot would be farther beyond the stage at one of these places than it already is.
+
+        With a doubtful position, the stage is smaller by `doubt` on every side.
+        """
         if self._stage is None:
             return
         for axis, (low, high), now, to in (

@@ -139,7 +139,7 @@ def _played(step: PlacedAction) -> Iterator[str]:
 
 
 def _blocks(machine: MachineDefinition) -> Iterator[Sequence[PlacedAction]]:
-    """Yield every list of actions, nested ones included."""
+    """Yield every list of actions in a behaviour, nested ones included."""
     for state in machine.states.values():
         for block in (state.entry, state.do, state.exit, *(t.actions for t in state.transitions)):
             yield from _nested(block)
