@@ -56,7 +56,7 @@ def _prepared(phrases: Mapping[str, tuple[str, ...]]) -> tuple[str, ...]:
     return tuple({f" {' '.join(form.literals)} ": None for form in found})
 
 
-def _with_slots(phrases: Mapping[str, tuple[str, ...]]) -> bool:
+def _are_slotted(phrases: Mapping[str, tuple[str, ...]]) -> bool:
     return any("{" in text for texts in phrases.values() for text in texts)
 
 
@@ -66,11 +66,11 @@ def is_heard(text: str, phrases: Mapping[str, tuple[str, ...]], lists: Lists = _
     `lists` are those that slots may name.
     """
     try:
-        table, prepared = _kept[id(phrases)]
+        table, (prepared, slotted) = _kept[id(phrases)]
     except KeyError:
         table = None
     if table is not phrases:
-        prepared = _phrases.put(phrases, _prepared(phrases))
+        prepared, slotted = _phrases.put(phrases, (_prepared(phrases), _are_slotted(phrases)))
     last, said = _last[0]
     if last is not text:
         said = padded(text[:MAX_TEXT_EXAMINED])
@@ -78,7 +78,7 @@ def is_heard(text: str, phrases: Mapping[str, tuple[str, ...]], lists: Lists = _
     for phrase in prepared:
         if phrase in said:
             return True
-    return _with_slots(phrases) and _is_caught(text, phrases, lists)
+    return slotted and _is_caught(text, phrases, lists)
 
 
 def _is_caught(text: str, phrases: Mapping[str, tuple[str, ...]], lists: Lists) -> bool:

@@ -54,7 +54,8 @@ class FastPaths:
         name, names = event.name, snapshot.configuration
         if ".command." in name:
             # A result becomes data of `done.do.*`, which a generated step does not compute
-            return whole if result_of(event.data) is not None else self._answered(snapshot, name)
+            has_result = event.data is not None and result_of(event.data) is not None
+            return whole if has_result else self._answered(snapshot, name)
         if name in (ARRIVED, LEFT, SHARED_EVENT) or name.startswith(CONTROLLER_EVENT):
             return whole
         make_room(self.paths)
