@@ -53,7 +53,7 @@ def _walks(machine: MachineDefinition, report: DocumentReport) -> None:
 
 
 def _leads_on(transition: Transition) -> bool:
-    """Return whether a transition is taken after an error, after some time, or at once."""
+    """Return whether a transition with a target is taken after an error, after some time, or at once."""
     event = transition.event
     after_error = not event or event == "*" or event.startswith("error")
     return bool(transition.targets) and (transition.delay is not None or after_error)

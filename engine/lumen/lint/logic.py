@@ -43,7 +43,7 @@ def tree(source: str) -> ExpressionNode:
 
 
 def never(*conditions: ExpressionNode) -> bool:
-    """Return whether these conditions can't all be true at once."""
+    """Return whether conditions certainly can't all be true at once; False if that is unknown."""
     spread = [_alternatives(condition, True) for condition in conditions]
     if any(s is None for s in spread):
         return False

@@ -53,7 +53,7 @@ class SurfaceSamples(NamedTuple):
 
 
 def sample_surface(controller: ControllerDefinition) -> SurfaceSamples:
-    """Sample the surface of a controller."""
+    """Return samples of a controller's surface."""
     survey = Survey(controller)
     slices = list(survey.slices())
     smooth = [

@@ -259,7 +259,7 @@ class Executor:
 
 
 def _news(activity: Activity) -> Mapping[str, Any] | None:
-    """Return the data of `done.command.ID` for an activity that has finished."""
+    """Return the data of `done.command.ID` for an activity that has finished; None without data."""
     if isinstance(activity, Misses) and activity.missed:
         return {MISSED: activity.missed}
     if isinstance(activity, Yields) and activity.result:

@@ -49,7 +49,7 @@ class Sight(NamedTuple):
 
 
 class StepText:
-    """One function that is being written."""
+    """The text of one function that is being written."""
 
     def __init__(self, machine: MachineDefinition) -> None:
         self.machine = machine
@@ -57,11 +57,8 @@ class StepText:
         self.constants: list[Any] = []
         self.depth = 2
         self.scope: Sight | None = None
-        """The content of the variable `scope`; None before there is such a variable."""
         self.chosen: dict[tuple[object, ...], str] = {}
-        """The variables that hold the chosen row of `hears` of a state."""
         self.sendid = "''"
-        """The text of the id that the event must have; most events have none."""
 
     def text(self) -> str:
         """Return the text written so far, as a complete function."""
