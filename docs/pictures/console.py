@@ -28,7 +28,7 @@ ROOT = Path(__file__).parents[2]
 PARTS = ("behaviors", "functions", "knowledge", "fuzzy", "motions", "schemas", "models", "lumen.yaml")
 PORT = 8765
 PAGE = f"http://127.0.0.1:{PORT}/"
-WAIT = 90.0
+WAIT = 300.0
 WIDE, PHONE = (1400, 900), (360, 740)
 """Of a window [px]."""
 LUMEN = [sys.executable, "-m", "lumen"]
@@ -100,6 +100,7 @@ class Camera:
         options = webdriver.ChromeOptions()
         for argument in ("--headless=new", "--no-sandbox", "--hide-scrollbars", "--lang=en-GB", "--disable-gpu"):
             options.add_argument(argument)
+        options.page_load_strategy = "none"  # each picture waits for what it shows
         self.driver = webdriver.Chrome(options, Service(shutil.which("chromedriver")))
 
     def look(self, path: str, size: tuple[int, int] = WIDE, *, dark: bool = False) -> None:
@@ -109,14 +110,19 @@ class Camera:
         self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": scheme})
         self.driver.get(PAGE + path)
         time.sleep(3)
-        wait(lambda: "Loading" not in self.shown(), "a loaded page")
+        wait(lambda: "Rest" in self.shown() and "Loading" not in self.shown(), "a loaded page")
 
     def shown(self) -> str:
         """The text of the page."""
-        return str(self.driver.find_element(By.TAG_NAME, "body").text)
+        return str(self.driver.execute_script("return document.body?.innerText ?? ''"))
 
-    def press(self, selector: str) -> None:
-        self.driver.find_element(By.CSS_SELECTOR, selector).click()
+    def sees(self, text: str) -> None:
+        """Wait until the page shows a text."""
+        wait(lambda: text in self.shown(), f"“{text}” on the page")
+
+    def press(self, selector: str, text: str = "") -> None:
+        """Press the first element that matches and has this text."""
+        next(one for one in self.driver.find_elements(By.CSS_SELECTOR, selector) if text in one.text).click()
         time.sleep(3)
 
     def take(self, name: str) -> None:
@@ -165,6 +171,7 @@ def take_wall(stack: ExitStack, camera: Camera) -> None:
     wait(lambda: waiting() == {"NAO", "Ani", "Budi"}, "three robots that wait for a name")
     command("rest", robot="Budi")
     camera.look("")
+    camera.sees("Resume")
     camera.take("wall")
 
 
@@ -176,13 +183,16 @@ def take_tour(stack: ExitStack, camera: Camera) -> None:
     hear("dance")
     until("dance")
     camera.look("")
+    camera.sees("Plays dance for Budi")
     camera.take("now")
-    camera.press(".entry:nth-child(2) button")
+    camera.press(".entry button", "With pleasure!")
+    wait(lambda: "Loading" not in camera.shown(), "a why")
     camera.take("why")
     tour = folder / "behaviors/tour.yaml"
     tour.write_text(tour.read_text("utf-8").replace('stop: "#any_question"', 'stop: "#any_qestion"'), "utf-8")
     wait(lambda: (robot().get("files", {}).get("last") or {}).get("verdict") == "refused", "files that are refused")
     camera.look("robot/NAO/files")
+    camera.sees("did you mean `any_question`?")
     camera.take("files")
     camera.look("robot/NAO/day", (1400, 1250), dark=True)
     camera.take("day")
@@ -194,6 +204,7 @@ def take_tour(stack: ExitStack, camera: Camera) -> None:
     until("watching")
     command("event", event="fallen", data=None)
     camera.look("")
+    camera.sees("The robot fell.")
     camera.take("fall")
 
 
