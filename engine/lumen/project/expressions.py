@@ -128,6 +128,8 @@ class Expressions:
 
     def _expanded(self, expand: Expand, meant: str, written: str, where: NodePath) -> str | None:
         """Return the source or text with the project's functions put in; None if that can't be done."""
+        if not self.functions:
+            return meant
         self.used |= {name for name in self.functions if name in meant}
         return expanded_here(expand, meant, self.functions, self.report, where, written)
 
@@ -144,7 +146,7 @@ class Expressions:
 
     def _calls_what_it_may(self, source: str, where: NodePath) -> bool:
         """Return True if `caught`, which is reserved for the engine, is not called; report it if it is."""
-        if not re.search(rf"\b{CAUGHT}\s*\(", source):
+        if CAUGHT not in source or not re.search(rf"\b{CAUGHT}\s*\(", source):
             return True
         self.report(
             UNKNOWN_FUNCTION, where, f"there is no function `{CAUGHT}`", "write `heard.NAME` in a row of `hears`"
