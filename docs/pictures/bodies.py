@@ -1,9 +1,11 @@
-"""Makes bodies.png: the bodies beside NAO that come with Lumen, each a moment into a motion, at honest physics;
-and reachy_mini.png: four moments of that robot.
+"""Make bodies.png and reachy_mini.png with simulated physics.
+
+bodies.png shows each body that comes with Lumen, except NAO, in the middle of a motion. reachy_mini.png shows four
+moments of Reachy Mini.
 
     python docs/pictures/bodies.py [--sheets FOLDER]
 
-`--sheets` draws six moments of each motion of each body there, to look at while one works on them.
+`--sheets` draws six moments of each motion of each body into that folder, for people who work on the motions.
 """
 
 import argparse
@@ -30,7 +32,7 @@ SHOWN = {
     "lantern": ("goodbye", 0.9, 0.18, 0.85),
     "reachy_mini": ("goodbye", 1.3, 0.16, 0.72),
 }
-"""Of each body: a motion, how far into it [s], how high its middle is, and from how far one looks [m]."""
+"""For each body: a motion, the time in it [s], the height of the body's middle and the distance of the camera [m]."""
 REACHY = (("greet", 1.4), ("curious", 1.4), ("goodbye", 1.4), ("sleepy", 5.8))
 CROP = 40, 120, 380, 480
 FLOOR, AROUND, DOWN = 0.5, 24.0, -8.0
@@ -46,7 +48,7 @@ def robot_of(name: str) -> tuple[Project, SimulatedRobot]:
 
 
 def shot(robot: SimulatedRobot, middle: float, away: float, size: tuple[int, int] = SIZE) -> Image.Image:
-    """The robot as it stands now, in its hall."""
+    """Return a picture of the robot in its hall, in its present pose."""
     camera = mujoco.MjvCamera()
     camera.type = mujoco.mjtCamera.mjCAMERA_FREE
     camera.lookat[:] = 0.0, 0.0, FLOOR + middle
@@ -58,7 +60,7 @@ def shot(robot: SimulatedRobot, middle: float, away: float, size: tuple[int, int
 
 
 def moments(name: str, motion: str, at: list[float]) -> list[Image.Image]:
-    """The body at these times [s] of a motion."""
+    """Return pictures of the body at these times [s] of a motion."""
     project, robot = robot_of(name)
     robot.advance(0.5)
     robot.start("c", Perform(project.motions[motion]))

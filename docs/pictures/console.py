@@ -1,9 +1,9 @@
-"""The pictures in docs/console.md: a tour, a why, a fall, a refused reload, a day, a phone, and a wall of three robots.
+"""Make the pictures of docs/console.md: a tour, a why, a fall, a refused reload, a day, a phone, and three robots.
 
     python -m docs.pictures.console [wall]
 
-Runs `lumen run` and `lumen console` in a copy of the project, with a visitor's words, and takes pictures in Chromium.
-With `wall` only the wall is photographed.
+The program runs `lumen run` and `lumen console` in a copy of the project, with a visitor's words, and takes pictures in
+Chromium. With `wall` it takes only the picture of the wall.
 """
 
 import json
@@ -30,12 +30,12 @@ PORT = 8765
 PAGE = f"http://127.0.0.1:{PORT}/"
 WAIT = 300.0
 WIDE, PHONE = (1400, 900), (360, 740)
-"""Of a window [px]."""
+"""The size of a window [px]."""
 LUMEN = [sys.executable, "-m", "lumen"]
 
 
 def ask(path: str, data: Any = None) -> Any:
-    """What the console answers."""
+    """Return the answer of the console."""
     body = None if data is None else json.dumps(data).encode()
     with urllib.request.urlopen(urllib.request.Request(PAGE + path, body, {"Content-Type": "application/json"})) as got:
         return json.loads(got.read())
@@ -46,7 +46,7 @@ def command(name: str, **fields: Any) -> Any:
 
 
 def hear(words: str) -> None:
-    """A visitor says something."""
+    """Send the words of a visitor."""
     command("event", event="heard", data={"result": words})
 
 
@@ -81,7 +81,7 @@ def waiting() -> set[str]:
 
 
 def visit(name: str, mood: str) -> None:
-    """Somebody who stands there gets as far as the offer."""
+    """Play a visitor up to the state in which the robot offers its subjects."""
     until("ask_name")
     hear(f"my name is {name}")
     until("how_are_you")
@@ -94,7 +94,7 @@ def visit(name: str, mood: str) -> None:
 
 
 class Camera:
-    """Chromium, which takes pictures."""
+    """A Chromium that takes pictures."""
 
     def __init__(self) -> None:
         options = webdriver.ChromeOptions()
@@ -113,8 +113,8 @@ class Camera:
         wait(lambda: "Rest" in self.shown() and "Loading" not in self.shown(), "a loaded page")
 
     def shown(self) -> str:
-        """The text of the page."""
-        return str(self.driver.execute_script("return document.body?.innerText ?? ''"))
+        """Return the text of the page."""
+        return str(self.driver.find_element(By.TAG_NAME, "body").text)
 
     def sees(self, text: str) -> None:
         """Wait until the page shows a text."""
@@ -140,7 +140,7 @@ def running(folder: Path, *words: str) -> Iterator[None]:
 
 
 def project(stack: ExitStack, name: str = "NAO") -> Path:
-    """A copy of the shipped exhibition, of a robot of that name."""
+    """Copy the shipped exhibition for a robot of that name."""
     folder = Path(stack.enter_context(tempfile.TemporaryDirectory()))
     for part in PARTS:
         (shutil.copytree if (ROOT / part).is_dir() else shutil.copy)(ROOT / part, folder / part)
@@ -160,7 +160,7 @@ def main() -> None:
 
 
 def take_wall(stack: ExitStack, camera: Camera) -> None:
-    """Three robots on one broker, of which one rests."""
+    """Three robots on one broker; one of them rests."""
     broker = RabbitMQ()
     broker.start()
     stack.callback(broker.stop)

@@ -1,7 +1,7 @@
-"""Draws the floors of the engine from the contract in pyproject.toml: `python docs/pictures/floors.py`.
+"""Draw the layers of the engine from the contract in pyproject.toml: `python docs/pictures/floors.py`.
 
-The rooms, their order and who stands beside whom are read there; what each is for is said here, and a room that is
-missing on either side is an error.
+The contract lists the packages, their order and their neighbours. This file lists the purpose of each package. A
+package that is missing in one of the two is an error.
 """
 
 import textwrap
@@ -40,7 +40,7 @@ PURPOSES: Mapping[str, str] = {
     "feature": "what a manifest can hold, and who reads them",
     "distributions": "which installed packages bring features",
 }
-"""What each room is for."""
+"""The purpose of each package."""
 
 ZONES: Mapping[str, str] = {
     "cli": "people",
@@ -58,7 +58,7 @@ ZONES: Mapping[str, str] = {
     "feature": "values",
     "distributions": "values",
 }
-"""What a floor has to do with, by its first room; floors of one zone stand together."""
+"""The zone of a layer, by its first package; the layers of one zone follow each other."""
 
 COLOURS: Mapping[str, tuple[str, str]] = {
     "people": ("#fdf0e3", "#c2621b"),
@@ -66,26 +66,26 @@ COLOURS: Mapping[str, tuple[str, str]] = {
     "the world and files": ("#e6f3ea", "#2f7d4f"),
     "values": ("#e9ebf8", "#4650a8"),
 }
-"""Of each zone the colour of the floor, and that of its names."""
+"""For each zone, the colour of its layers and the colour of their names."""
 
 WIDTH, MARGIN, GAP, PADDING = 980, 28, 10, 10
 SHAFT, LEGEND = 46, 116
-"""The room for the arrow on the left, and for the zones' names on the right [px]."""
+"""The space for the arrow on the left, and for the zones' names on the right [px]."""
 TOP, LINE, ALONE = 66, 15, 140
-"""Where the first floor begins, how high a line is, and where the purpose of a room without neighbours begins [px]."""
+"""The top of the first layer, the height of a line, and the left edge of the purpose of a lone package [px]."""
 FONT = "-apple-system, 'Segoe UI', Roboto, Helvetica, Arial, 'DejaVu Sans', sans-serif"
 MONO = "ui-monospace, SFMono-Regular, Menlo, Consolas, 'DejaVu Sans Mono', monospace"
 
 
 def floors(pyproject: str) -> list[list[str]]:
-    """The rooms of each floor, from the top, of the import contract."""
+    """Return the packages of each layer of the import contract, the top layer first."""
     contracts = tomllib.loads(pyproject)["tool"]["importlinter"]["contracts"]
     layers = next(contract["layers"] for contract in contracts if contract["type"] == "layers")
     return [[room.strip().removeprefix("lumen.") for room in layer.split("|")] for layer in layers]
 
 
 def picture(house: Sequence[Sequence[str]]) -> str:
-    """The house as SVG. Raises ValueError for rooms of which nothing is said here, and for what is no longer there."""
+    """Return the layers as SVG; raise ValueError if PURPOSES and the contract do not name the same packages."""
     if differing := {room for floor in house for room in floor} ^ PURPOSES.keys():
         raise ValueError(f"the contract and PURPOSES differ in {', '.join(sorted(differing))}")
     drawn: list[str] = []
@@ -102,7 +102,7 @@ def picture(house: Sequence[Sequence[str]]) -> str:
 
 
 def _signs(rooms: int) -> int:
-    """How many characters of a purpose stand in a line."""
+    """Return the number of characters of a purpose that fit in a line."""
     return round((_room_width(rooms) - 2 * PADDING - (ALONE if rooms == 1 else 0)) / 6.1)
 
 
@@ -130,7 +130,7 @@ def _floor(
 
 
 def _zone(name: str, begin: float, end: float) -> Iterator[str]:
-    """A bracket beside the floors of a zone, and its name."""
+    """Draw a bracket beside the layers of a zone, and its name."""
     x, ink = WIDTH - MARGIN - LEGEND + 12, COLOURS[name][1]
     yield (
         f'<path d="M{x} {begin + 4} h5 v{end - begin - 8} h-5" fill="none" stroke="{ink}" stroke-width="1.6"'

@@ -1,13 +1,14 @@
-"""Makes every picture of the documentation from the shipped project, at honest physics.
+"""Make the pictures of the documentation from the shipped project, with simulated physics.
 
     python docs/pictures/make.py [tour] [museum] [head] [sides] [motions] [walk] [postures] [fuzzy] [loop] [film]
 
-`tour` is the shipped story, mid-dance; `museum` the guide of examples/museum at the organ.
-`head` is the paper's Fig. 13 and 14: the top camera's image when the visitor's face is first seen, and once the head
-has turned to it; a cross marks the image's centre, a ring the face. `sides` is the robot from three sides. `motions`
-is a sheet of each motion, at the moments that differ most. `walk` is a strip of `walk: {x: 0.2}`, `postures` one of
-each way down to the floor and up again. `fuzzy` draws the head controller, one evaluation of it, and the paper's
-erratum against it; `loop` the closed loop, and prints its numbers. `film` is four moments of a film of the tour.
+`tour` shows the shipped story during the dance; `museum` shows the guide of examples/museum at the organ. `head`
+makes the paper's Fig. 13 and 14: the top camera's image when the camera first sees the visitor's face, and the image
+after the head has turned to it; a cross marks the centre of the image, and a ring marks the face. `sides` shows the
+robot from three sides. `motions` makes a sheet of each motion, with the moments that differ most. `walk` shows `walk:
+{x: 0.2}` as a row of pictures, and `postures` each way down to the floor and up again. `fuzzy` draws the head
+controller, one evaluation of it, and a comparison with the tables as the paper prints them. `loop` draws the closed
+loop and prints its numbers. `film` shows four moments of a film of the tour.
 """
 
 import argparse
@@ -45,7 +46,7 @@ HERE = Path(__file__).parent
 MID_DANCE = 7.0
 STRIP = 8
 FILM_FRAMES = (30, 110, 190, 225)
-"""A title, a close-up, a two-shot and what the visitor sees."""
+"""A title, a close-up, a two-shot and the visitor's point of view."""
 WALK = 5.4
 ORGAN = 2.1, 0.8
 LONG = 14.0
@@ -59,7 +60,7 @@ def robot_of(project: Project) -> SimulatedRobot:
 
 
 def picture(robot: SimulatedRobot, camera: str | mujoco.MjvCamera, width: int, height: int) -> Image.Image:
-    """What a camera sees now, one of the hall or another."""
+    """Return the present image of a camera of the hall or of another camera."""
     studio = SceneRenderer(robot.world.model, RenderQuality(shadows=4096, samples=4))
     pixels = studio.draw(RenderState.of(robot.world.model, robot.world.data), camera, width, height)
     studio.close()
@@ -67,7 +68,7 @@ def picture(robot: SimulatedRobot, camera: str | mujoco.MjvCamera, width: int, h
 
 
 def play(project: Project, robot: SimulatedRobot, look: Callable[[Exhibition, float], bool]) -> None:
-    """The shipped story, until `look` has seen enough."""
+    """Play the shipped story until `look` has seen enough."""
     chosen = Setup(robot, SimulatedClock(robot.advance), robot)
     show = Exhibition(Plan(project, chosen, story=project.stories[project.story]))
     show.start()
@@ -128,7 +129,7 @@ def head(project: Project) -> None:
 
 
 def mark(robot: SimulatedRobot, face: tuple[float, float], centre: tuple[float, float]) -> Image.Image:
-    """The top camera's image, its centre and the face marked."""
+    """Return the top camera's image, with marks at its centre and at the face."""
     frame = robot.read(Sense.IMAGE)
     assert isinstance(frame, Frame)
     image = Image.fromarray(frame.pixels())
@@ -141,7 +142,7 @@ def mark(robot: SimulatedRobot, face: tuple[float, float], centre: tuple[float, 
 
 
 def near(robot: SimulatedRobot, size: tuple[int, int], label: str = "", around: float = 35.0) -> Image.Image:
-    """The robot from nearby, wherever it has moved to, with words in the corner; `around` it [deg] from its front."""
+    """Return a close picture of the robot, from `around` degrees beside its front, with a text in a corner."""
     world = robot.world
     camera = mujoco.MjvCamera()
     camera.lookat[:] = (*world.data.xpos[world.torso][:2], FLOOR + MIDDLE)
@@ -153,7 +154,7 @@ def near(robot: SimulatedRobot, size: tuple[int, int], label: str = "", around: 
 
 
 def sheet(shots: Sequence[Image.Image], columns: int) -> Image.Image:
-    """Pictures of one size in rows."""
+    """Arrange pictures of one size in rows."""
     width, height = shots[0].size
     whole = Image.new("RGB", (width * columns, height * math.ceil(len(shots) / columns)))
     for i, shot in enumerate(shots):
@@ -162,7 +163,7 @@ def sheet(shots: Sequence[Image.Image], columns: int) -> Image.Image:
 
 
 def sides(project: Project) -> None:
-    """The robot from its front, from its left and from behind."""
+    """Show the robot from its front, from its left and from behind."""
     robot = robot_of(project)
     robot.advance(1.0)
     shots = [near(robot, (360, 420), label, around) for label, around in SIDES.items()]
@@ -171,7 +172,7 @@ def sides(project: Project) -> None:
 
 
 def moments(project: Project, motion: MotionDefinition, count: int) -> list[float]:
-    """The times [s] of the poses of a motion that differ most from each other."""
+    """Return the times [s] of the poses of a motion that differ most from each other."""
     course = Trajectory(motion, project.body.postures[motion.start or "Stand"])
     times = np.arange(0.1, motion.duration, 0.1)
     poses = np.array([[course.sample(t).get(name, 0.0) for name in motion.tracks] for t in times])
@@ -208,7 +209,7 @@ def walk(project: Project) -> None:
 
 
 def postures(project: Project) -> None:
-    """A row for each passage between two postures: the robot before it, on its way, and after it."""
+    """Make a row for each passage between two postures: the robot before, during and after it."""
     shots, count = [], 7
     for passage in project.body.passages:
         robot = robot_of(project)
@@ -224,14 +225,14 @@ def postures(project: Project) -> None:
 
 
 def perform(robot: SimulatedRobot, command: Posture) -> None:
-    """A command to its end."""
+    """Run a command to its end."""
     robot.start("p", command)
     while not any(event.name == "done.command.p" for event in robot.poll()):
         robot.advance(0.1)
 
 
 def fuzzy(project: Project) -> None:
-    """The shipped controller, what it says of a face on the left, and the tables as printed beside it."""
+    """Draw the shipped controller, its output for a face on the left, and a comparison with the printed tables."""
     head = Controller.load(Path(project.root) / "fuzzy/head.yaml")
     printed = Controller.load(Path(project.root) / "examples/erratum/fuzzy/head.yaml")
     at = explained_sheet(head, head.explain({"FaceXLoc": 80.0, "FaceYLoc": 120.0}))
@@ -247,7 +248,7 @@ def loop(project: Project) -> None:
 
 
 def film(project: Project) -> None:
-    """A film of the tour's beginning, and four frames of it."""
+    """Film the beginning of the tour, and make a picture of four frames."""
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder, "tour.mp4")
         size = 960, 540

@@ -1,8 +1,8 @@
-"""The transcript in docs/reload.md: a visitor is shown a dance while somebody edits the files.
+"""Print the transcript in docs/reload.md: a person edits the files while the robot dances for a visitor.
 
     python docs/pictures/reload.py
 
-What the exhibition prints stands as it is, up to its end; what is done beside it stands between the lines, after a `$`.
+The transcript has every line that the exhibition prints, and each command typed in another terminal, after a `$`.
 """
 
 import shutil
@@ -20,7 +20,7 @@ WAIT = 60.0
 
 
 class Visit:
-    """`lumen run` in a copy of the project, with somebody who types and somebody who edits."""
+    """`lumen run` in a copy of the project, with a visitor's typed words and edits of the files."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
@@ -53,7 +53,7 @@ class Visit:
         self._process.stdin.flush()
 
     def does(self, command: str) -> None:
-        """In another terminal."""
+        """Run a command in another terminal."""
         print(f"$ {command}", flush=True)
         lumen = f"{sys.executable} -m lumen"
         subprocess.run(command.replace("lumen", lumen, 1), shell=True, cwd=self.folder, check=False)
