@@ -22,7 +22,7 @@ def check(draft: ProjectDraft) -> None:
             name = meant if meant.endswith("/") else meant.rpartition("/")[2]
             message = f"Lumen does not read this: its name is not `{name}`"
             draft.say(NOT_READ, there.rstrip("/"), message, f"rename it to {name}")
-    for file, message, hint in unread_in(draft.root, {*draft.names[MODELS], *shipped_models()}, draft.looks.at):
+    for file, message, hint in unread_in(draft.root, {*draft.names.get(MODELS, ()), *shipped_models()}, draft.looks.at):
         draft.say(NOT_READ, file, message, hint)
     if MAIN_FILE not in draft.files and (there := misnamed_main_file(draft.root)):
         hint = f"rename {there} to {MAIN_FILE}"
