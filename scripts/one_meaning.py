@@ -26,7 +26,13 @@ MEANINGS: Mapping[str, Meaning] = {
     "home_of": Meaning("the folder in which an exhibition keeps its files", ("project/home.py",)),
     "passage": Meaning(
         "a question and its answer in `knowledge/`; a motion in the folder `models/passages`",
-        ("language/", "retrieval/", "motion/postures.py", "features/console/past.py", "features/simulation/"),
+        (
+            "language/",
+            "retrieval/",
+            "motion/postures.py",
+            *(f"features/console/{file}.py" for file in ("past", "written_sentences")),
+            "features/simulation/",
+        ),
     ),
     "recording": Meaning(
         "a file with the messages of a run; the robot of `--robot recording`",

@@ -8,8 +8,8 @@ from typing import Any
 
 import pytest
 
+from lumen.features.console.job import skills_of
 from lumen.features.console.known_robot import KnownRobot
-from lumen.features.console.own_skills import skills_of
 from lumen.features.console.people import Role
 from tests import ROOT
 from tests.features.console.conftest import Hosted

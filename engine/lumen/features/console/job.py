@@ -8,11 +8,12 @@ modules, because imports are most of its time.
 """
 
 import json
+import re
 import sys
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import suppress
 from datetime import date
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 from time import monotonic
 from typing import Any
 
@@ -24,6 +25,7 @@ from lumen.upkeep.garbage import search_rarely
 from lumen.upkeep.judge_process import MAX_MEMORY, AnswerPipe, answering, limit_time
 
 TOO_LONG_AGO = "too long ago"
+_MANIFEST = re.compile(r"skills/[^/]+\.yaml")
 REPLAY_TIME = 10.0
 """The time limit for replaying visits with the saved files [s]; the rest are reported as unknown."""
 
@@ -105,8 +107,6 @@ def story(pipe: AnswerPipe, root: Path, robot: str, position: int, visitor: str,
 
 def skills(pipe: AnswerPipe, root: Path, robot: str, hash: str) -> Iterator[bytes]:
     """Answer with the manifests of the project's skills."""
-    from lumen.features.console.own_skills import skills_of
-
     yield orjson.dumps(skills_of(root, robot, hash))
 
 
@@ -139,6 +139,44 @@ def poses(pipe: AnswerPipe, root: Path, robot: str) -> Iterator[bytes]:
     limit_time(0.0)
     for angles in _read(pipe):
         yield orjson.dumps(drawing.pose(angles))
+
+
+def skills_of(root: Path, robot: str, hash: str) -> dict[str, Any]:
+    """Return the skills of the bundle `hash`, or of the saved files if that bundle was not kept, sorted by name.
+
+    Texts that a manifest has by language are maps from the language to the text.
+    """
+    from lumen.project.files import read_files
+    from lumen.run.one_robot import one_robot
+    from lumen.run.replaying.journals import KeptBundles
+
+    robot = one_robot(root, robot)
+    files = KeptBundles(root, robot).files(hash) or read_files(root, robot)
+    names = sorted(filter(_MANIFEST.fullmatch, files))
+    return {"skills": [one for file in names if (one := _skill(file, files[file]))]}
+
+
+def _skill(file: str, content: bytes) -> dict[str, Any] | None:
+    """Return a skill as JSON data, None if its manifest can't be read."""
+    from lumen.project.yaml_reader import parse
+
+    document, _ = parse(file, content)
+    data = document.data if document else None
+    if not isinstance(data, Mapping):
+        return None
+    by, schema = data.get("performed-by"), data.get("in")
+    schema = schema if isinstance(schema, Mapping) else {}
+    kind, target = next(iter(by.items())) if isinstance(by, Mapping) and by else ("", "")
+    properties = schema.get("properties")
+    return {
+        "name": PurePosixPath(file).stem,
+        "file": file,
+        "description": data.get("description", ""),
+        "kind": str(kind),
+        "target": " ".join(map(str, target)) if isinstance(target, list) else str(target),
+        "arguments": properties if isinstance(properties, Mapping) else {},
+        "required": [name for name in schema.get("required") or () if isinstance(name, str)],
+    }
 
 
 JOBS: dict[str, Callable[..., Iterable[bytes]]] = {

@@ -84,12 +84,15 @@ def reword(root: Path, robot: str, wanted: NewWording, *, write: bool) -> dict[s
     if write and texts and not faulty:
         _save(root / wanted.file, wanted.file, content, after)
     return {
-        "file": one.file, "line": one.report.document.place(one.path).line, "version": version_of(after),
-        "written": bool(write and texts and not faulty), "faulty": faulty,
+        "file": one.file,
+        "line": one.report.document.place(one.path).line,
+        "version": version_of(after),
+        "written": bool(write and texts and not faulty),
+        "faulty": faulty,
         "findings": [each.to_json() for each in findings],
         "changes": [{"language": key, "was": before[key], "now": text} for key, text in texts.items()],
         "stories": _stories(files, [before[key] for key in texts if before[key]]),
-    }  # fmt: skip
+    }
 
 
 def _checked(before: Mapping[str, str], wanted: Mapping[str, str]) -> dict[str, str]:

@@ -54,10 +54,14 @@ class WrittenSentence(NamedTuple):
     def to_json(self, languages: tuple[str, ...], content: bytes) -> dict[str, Any]:
         """Return the place with the text in each of the project's languages; a text is empty if it is missing."""
         return {
-            "file": self.file, "line": self.report.document.place(self.path).line, "around": list(self.around),
-            "alternative": self.alternative, "texts": texts_of(self, languages),
-            "version": version_of(content), "editable": not self.file.endswith(MARKDOWN),
-        }  # fmt: skip
+            "file": self.file,
+            "line": self.report.document.place(self.path).line,
+            "around": list(self.around),
+            "alternative": self.alternative,
+            "texts": texts_of(self, languages),
+            "version": version_of(content),
+            "editable": not self.file.endswith(MARKDOWN),
+        }
 
 
 def version_of(content: bytes) -> str:

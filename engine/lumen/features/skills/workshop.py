@@ -177,11 +177,13 @@ class Workshop:
         with self._lock:
             return {
                 name: {
-                    "state": bench.now(), "since": iso_time(bench.since), "crashes": bench.crashes,
+                    "state": bench.now(),
+                    "since": iso_time(bench.since),
+                    "crashes": bench.crashes,
                     "trouble": bench.trouble,
                 }
                 for name, bench in self._benches.items()
-            }  # fmt: skip
+            }
 
     def processes(self, name: str) -> list[SkillProcess]:
         """Return the processes of a skill that have not ended."""
