@@ -2,6 +2,7 @@
 // The day from left to right: hours, visits, marks, and the moment that is looked at.
 /** @import { Day, Stretch } from "../types" */
 import { clock, html, span, t, typed } from "../ui.js";
+import { ZoomButtons, ticks, useZoom } from "./zoom.js";
 
 const HOUR = 3600e3,
   STEP = 1000,
@@ -82,7 +83,9 @@ export function Line({ day, bounds, visit, moment, scrub, look }) {
     <label><span class="hidden">${t("day.scrub")}</span><input type="range" min=${begin} max=${end} step=${STEP}
       value=${moment}
       aria-valuetext="${clock(iso(moment))}${visit ? `, ${around(visit)}` : ""}"
+      onKeyDown=${(/** @type {KeyboardEvent} */ e) => view.typed(e, scrub, STEP)}
       onInput=${typed((text) => scrub(Number(text)))} /></label>
+    <${ZoomButtons} view=${view} bounds=${bounds} />
     ${
       day.marks?.length > 0 &&
       html`<ul class="marks">${day.marks.map(

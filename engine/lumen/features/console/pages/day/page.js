@@ -190,17 +190,24 @@ export default function DayPage({ name }) {
       leave();
     };
   }, [date]);
-  const scrub = (/** @type {number} */ at) => {
-    move(at);
-    mark(null);
+  /**
+   * Look at a moment; with `minute`, at the visit that begins within a minute of it, if none goes on then.
+   * @param {number} at
+   * @param {boolean} [minute]
+   */
+  const scrub = (at, minute = false) => {
     const inside = parts.filter((one) => Date.parse(one.began) <= at).at(-1) ?? parts[0];
     const visited = inside?.n && !(Date.parse(inside.ended) < at);
-    const begins = (one) => one.n && Date.parse(one.began) > at && Date.parse(one.began) < at + MINUTE;
+    const begins = (/** @type {Stretch} */ one) =>
+      one.n && Date.parse(one.began) > at && Date.parse(one.began) < at + MINUTE;
     const next = minute && !visited && parts.find(begins);
-    if (next) return look(next);
-    (move(at), mark(null));
+    if (next) {
+      look(next);
+      return;
+    }
+    move(at);
+    mark(null);
     if (inside && inside.from !== visit?.from) choose(inside);
-    return undefined;
   };
   const parts = day ? stretches(day) : [];
   const open = (/** @type {Written} */ entry) => {
