@@ -1,12 +1,29 @@
+// @ts-check
 // Edit this sentence: where something that the robot said is written, and a new wording of it in all languages.
+/** @import { Data, Entry, FoundSentence, Reworded, SentencePlace } from "./types" */
 import { JOB, get } from "./live.js";
 import { InEnglish, Quote, reasonOf } from "./quoted.js";
 import { may } from "./session.js";
-import { Dialog, html, languageName, place, t, useEffect, useRef, useState } from "./ui.js";
+import { Badge, Dialog, Select, html, languageName, place, t, typed, useEffect, useRef, useState } from "./ui.js";
+
+/**
+ * A sentence of the robot: the position of its entry in the journal, and the id of its command, empty for a sentence
+ * that an operator typed.
+ * @typedef {{ position: number, id: string, text: string }} Sentence
+ */
+
+/**
+ * What was saved, with the texts before it and what named the place.
+ * @typedef {Reworded & { before: Record<string, string>, body: Data }} Written
+ */
 
 const LEVELS = { error: "bad", warning: "warn", info: "kind" };
 const TYPED = /^says “([^]*)”, /; // the note of the console about a sentence that an operator typed
 
+/**
+ * @param {Data} body
+ * @returns {Promise<Reworded>}
+ */
 async function post(body) {
   const answer = await fetch("/api/sentence", {
     method: "POST",
@@ -19,19 +36,27 @@ async function post(body) {
   return said;
 }
 
-/** The sentences of an entry of the journal, each with the id of its command; that of an operator has none. */
+/**
+ * The sentences of an entry of the journal, each with the id of its command; that of an operator has none.
+ * @param {Entry} entry
+ * @returns {Sentence[]}
+ */
 export function sentencesOf(entry) {
-  const begun = (entry?.commands ?? []).map((one) => one.Start).filter((one) => one?.command?.Say);
+  const begun = (entry.commands ?? []).map((one) => one.Start).filter((one) => one?.command?.Say);
   const said = begun.map((one) => ({ position: entry.position, id: one.id, text: one.command.Say.text }));
-  const typed = entry?.kind === "person" && TYPED.exec(entry.text);
-  return typed ? [{ position: entry.position, id: "", text: typed[1] }] : said;
+  const note = entry.kind === "person" && TYPED.exec(entry.text);
+  return note ? [{ position: entry.position, id: "", text: note[1] }] : said;
 }
 
-/** What of a text differs from before: as before, and as it will be. */
+/**
+ * What of a text differs from before: as before, and as it will be.
+ * @param {{ was: string, now: string }} props
+ */
 function Change({ was, now }) {
   return html`<p>− <del>${was}</del></p><p>+ <ins>${now}</ins></p>`;
 }
 
+/** @param {{ check: Reworded }} props */
 function Check({ check }) {
   return html`<div class="diff check">
     ${check.changes.map(
@@ -41,7 +66,7 @@ function Check({ check }) {
     ${check.changes.length === 0 && html`<p>${t("sentence.same")}</p>`}
     ${check.findings.length > 0 && html`<${InEnglish} />`}
     ${check.findings.map(
-      (one) => html`<p><span class="badge" data-state=${LEVELS[one.severity]}>${t(`severity.${one.severity}`)}</span>
+      (one) => html`<p><${Badge} state=${LEVELS[one.severity]}>${t(`severity.${one.severity}`)}</${Badge}>
       ${" "}<span class="place">${place(one.file, one.line)}</span> <span lang="en">${one.message}</span></p>`,
     )}
     ${check.changes.length > 0 && check.findings.length === 0 && html`<p>${t("files.findings.none")}</p>`}
@@ -52,21 +77,28 @@ function Check({ check }) {
   </div>`;
 }
 
-/** The texts of one place, by language: checked first, then saved; what was saved can be undone. */
+/**
+ * The texts of one place, by language: checked first, then saved; what was saved can be undone.
+ * @param {{ name: string, at: SentencePlace, saved: (written: Written) => void }} props
+ */
 function Wording({ name, at, saved }) {
   const [texts, write] = useState(at.texts),
-    [check, show] = useState(null),
+    [check, show] = useState(/** @type {Reworded | null} */ (null)),
     [wrong, complain] = useState(""),
     [busy, wait] = useState(false),
-    first = useRef(null);
+    first = useRef(/** @type {HTMLTextAreaElement | null} */ (null));
   useEffect(() => first.current?.focus(), []);
   const body = { robot: name, file: at.file, around: at.around, alternative: at.alternative, version: at.version };
-  const send = async (submitted) => {
+  const send = async (/** @type {SubmitEvent} */ submitted) => {
     submitted.preventDefault();
-    (wait(true), complain(""));
+    wait(true);
+    complain("");
     try {
       const checked = await post({ ...body, texts, write: check !== null });
-      if (checked.written) return saved({ ...checked, before: at.texts, body });
+      if (checked.written) {
+        saved({ ...checked, before: at.texts, body });
+        return;
+      }
       show(checked);
     } catch (error) {
       complain(reasonOf(error));
@@ -74,12 +106,15 @@ function Wording({ name, at, saved }) {
     wait(false);
   };
   const ready = check && !check.faulty && check.changes.length > 0;
-  const change = (code, text) => (write({ ...texts, [code]: text }), show(null));
+  const change = (/** @type {string} */ code, /** @type {string} */ text) => {
+    write({ ...texts, [code]: text });
+    show(null);
+  };
   return html`<form class="fields sentence" onSubmit=${send}>
     ${Object.entries(texts).map(
       ([code, text], n) => html`<label key=${code}>${code ? languageName(code) : t("sentence.text")}
       <textarea ref=${n === 0 ? first : null} rows="2" maxlength="1000" lang=${code || null} value=${text}
-        onInput=${(e) => change(code, e.target.value)}></textarea></label>`,
+        onInput=${typed((now) => change(code, now))}></textarea></label>`,
     )}
     <p class="quiet">${t("sentence.holes")}</p>
     ${check && html`<${Check} check=${check} />`}
@@ -89,12 +124,16 @@ function Wording({ name, at, saved }) {
       ${t(ready ? "day.passage.save" : "sentence.check")}</button></form>`;
 }
 
-/** What was saved, with a way back: the old texts are written again. */
+/**
+ * What was saved, with a way back: the old texts are written again.
+ * @param {{ name: string, was: Written, undone: (written: Reworded) => void }} props
+ */
 function Saved({ name, was, undone }) {
   const [wrong, complain] = useState(""),
     [busy, wait] = useState(false);
   const undo = async () => {
-    (wait(true), complain(""));
+    wait(true);
+    complain("");
     const changed = was.changes.filter((one) => one.was).map((one) => [one.language, was.before[one.language]]);
     try {
       undone(await post({ ...was.body, version: was.version, texts: Object.fromEntries(changed), write: true }));
@@ -112,11 +151,13 @@ function Saved({ name, was, undone }) {
     }`;
 }
 
+/** @type {Record<string, string>} */
 const NOWHERE = { operator: "sentence.operator", model: "sentence.model", nowhere: "sentence.nowhere" };
 
+/** @param {{ name: string, found: FoundSentence }} props */
 function Places({ name, found }) {
   const [chosen, choose] = useState(0),
-    [was, save] = useState(null),
+    [was, save] = useState(/** @type {Written | null} */ (null)),
     [undone, undo] = useState(false);
   const at = found.places[chosen];
   if (!at) return html`<p>${t(NOWHERE[found.source] ?? "sentence.nowhere")}</p>`;
@@ -125,9 +166,8 @@ function Places({ name, found }) {
   return html`${
     found.places.length > 1 &&
     html`<label class="fields">${t("sentence.several")}
-    <select value=${chosen} onChange=${(e) => choose(Number(e.target.value))}>${found.places.map(
-      (one, n) => html`<option value=${n} selected=${n === chosen}>${place(one.file, one.line)}</option>`,
-    )}</select></label>`
+    <${Select} value=${`${chosen}`} choose=${(/** @type {string} */ one) => choose(Number(one))}
+      options=${found.places.map((one, n) => [`${n}`, place(one.file, one.line)])} /></label>`
   }
     <p>${t(at.file.startsWith("knowledge/") ? "sentence.passage" : "sentence.at")} <b
       class="place">${place(at.file, at.line)}</b></p>
@@ -138,8 +178,9 @@ function Places({ name, found }) {
     }`;
 }
 
+/** @param {{ name: string, sentence: Sentence, onClose: () => void }} props */
 export function SentenceDialog({ name, sentence, onClose }) {
-  const [found, set] = useState(null),
+  const [found, set] = useState(/** @type {FoundSentence | null} */ (null)),
     [failed, fail] = useState("");
   useEffect(() => {
     get("/api/sentence", { robot: name, position: sentence.position, id: sentence.id }, JOB).then(set, (error) =>
@@ -152,7 +193,10 @@ export function SentenceDialog({ name, sentence, onClose }) {
     ${found && html`<${Places} name=${name} found=${found} />`}</${Dialog}>`;
 }
 
-/** A button for each sentence of an entry, for authors; `edit(sentence)` opens its dialog. */
+/**
+ * A button for each sentence of an entry, for authors; `edit(sentence)` opens its dialog.
+ * @param {{ entry: Entry, edit: (sentence: Sentence) => void }} props
+ */
 export function EditButtons({ entry, edit }) {
   const sentences = may("author") ? sentencesOf(entry) : [];
   return sentences.map(

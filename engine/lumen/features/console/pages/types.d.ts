@@ -96,6 +96,25 @@ export interface Process {
   process: any;
   heard: string;
   word?: string;
+  /** The states of the skills that it performs. */
+  skills?: Record<string, SkillState>;
+}
+
+/** The state of a skill; `crashes` counts the times that its program crashed or was killed. */
+export interface SkillState {
+  state: string;
+  since: string;
+  crashes: number;
+  trouble: string;
+}
+
+/** A module of the project's own; `reason` is why it was lost. `restarts` is missing if another machine runs it. */
+export interface OwnModule {
+  module: string;
+  state: string;
+  since: string;
+  reason: string | null;
+  restarts?: number;
 }
 
 /** The readings of a robot: a number for each joint or side, or one without a name. */
@@ -159,7 +178,8 @@ export interface RobotSent {
   /** The hash of the files that run. */
   bundle?: string;
   last_reload?: LastReload | null;
-  modules?: any[];
+  modules?: OwnModule[];
+  skill_states?: Record<string, SkillState>;
   senses?: Senses;
   processes?: Process[];
   files?: Partial<Files>;
@@ -306,6 +326,69 @@ export interface Link extends Place {
   text: string;
   at: string;
   values: Data | null;
+}
+
+/** `/api/skills` */
+export interface Skills {
+  skills: Skill[];
+}
+
+/** A skill from its manifest; only its name is known if its files are on another machine, and `kind` is empty. */
+export interface Skill {
+  name: string;
+  file?: string;
+  description: Texts;
+  /** How it is performed: `python`, `module`, `program` …, with its `target`. */
+  kind: string;
+  target?: string;
+  arguments: Record<string, ArgumentSchema>;
+  required: string[];
+}
+
+/** The JSON Schema of an argument, with the keys that the page uses. */
+export interface ArgumentSchema {
+  type?: string;
+  enum?: unknown[];
+  default?: unknown;
+  description?: Texts;
+  minimum?: number;
+  maximum?: number;
+  format?: string;
+  [more: string]: unknown;
+}
+
+/** GET `/api/sentence`: what the robot said, and the places of the text in the files, the most probable first. */
+export interface FoundSentence {
+  text: string;
+  language: string;
+  source: "operator" | "model" | "file" | "nowhere";
+  places: SentencePlace[];
+}
+
+/** A text in a file; `texts` are by language, by the empty name if the text is for every language. */
+export interface SentencePlace {
+  file: string;
+  line: number;
+  /** The path of the text in its file, and its number among its alternatives. */
+  around: (string | number)[];
+  alternative: number | null;
+  texts: Record<string, string>;
+  /** A hash of the file. */
+  version: string;
+  editable: boolean;
+}
+
+/** POST `/api/sentence`: a new wording that was checked, and `written` or not; `faulty` if lint found an error. */
+export interface Reworded {
+  file: string;
+  line: number;
+  version: string;
+  written: boolean;
+  faulty: boolean;
+  findings: Diagnostic[];
+  changes: { language: string; was: string; now: string }[];
+  /** The files of stories that have the former text. */
+  stories: string[];
 }
 
 /** `/api/fork`: what was, and what would have been. */

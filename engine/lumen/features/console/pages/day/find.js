@@ -11,6 +11,8 @@ const TIME = /^\s*([01]?\d|2[0-3])[:.]([0-5]\d)(?:[:.]([0-5]\d))?\s*$/;
 /**
  * A time of day, such as 14:03 or 14.03.20, on a date: the moment [ms since 1970], and whether it is a whole minute;
  * null if the text is none.
+ * @param {string} date
+ * @param {string} text
  */
 export function momentOf(date, text) {
   const [found, hour, minute, second] = TIME.exec(text) ?? [];
@@ -18,7 +20,11 @@ export function momentOf(date, text) {
   return found ? { at: at(), minute: second === undefined } : null;
 }
 
-/** @param {{ date: string, scrub: (at: number) => void }} props */
+/**
+ * `scrub(at, minute)` looks at a moment [ms since 1970] or, with `minute`, at a whole minute.
+ * @typedef {{ scrub: (at: number, minute?: boolean) => void }} Scrubs
+ * @param {{ date: string } & Scrubs} props
+ */
 function GoTo({ date, scrub }) {
   const [text, write] = useState(""),
     [wrong, complain] = useState("");
@@ -68,8 +74,8 @@ function Search({ name, first, last, open }) {
 }
 
 /**
- * `scrub(at, minute)` looks at a moment [ms since 1970] or a whole minute, `open(entry)` at an entry; `parts` are the
- * stretches of the day.
+ * `open(entry)` looks at an entry; `parts` are the stretches of the day.
+ * @param {{ name: string, date: string, parts: Stretch[], open: (entry: Written) => void } & Scrubs} props
  */
 export function Find({ name, date, parts, scrub, open }) {
   return html`<${Part} title=${t("find")} kind="find"><${GoTo} date=${date} scrub=${scrub} />

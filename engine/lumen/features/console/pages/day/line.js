@@ -1,6 +1,7 @@
 // @ts-check
 // The day from left to right: hours, visits, marks, and the moment that is looked at.
 /** @import { Day, Stretch } from "../types" */
+/** @import { Times } from "./zoom.js" */
 import { clock, html, span, t, typed } from "../ui.js";
 import { ZoomButtons, ticks, useZoom } from "./zoom.js";
 
@@ -20,7 +21,7 @@ export const stretches = (day) =>
 /**
  * From the full hour before the first of what happened to the one after the last [ms since 1970].
  * @param {Day} day
- * @returns {[begin: number, end: number]}
+ * @returns {Times}
  */
 export function bounds(day) {
   const times = stretches(day)
@@ -39,21 +40,29 @@ export function bounds(day) {
 const around = (visit) =>
   visit.n ? `${t("day.visit", { n: visit.n })}, ${span(visit.seconds ?? 0)}` : t("day.between");
 
-/** A time below the line, in the middle of its mark; at an end of the line, inside the line. */
+/**
+ * A time below the line, in the middle of its mark; at an end of the line, inside the line.
+ * @param {{ at: number, part: number, seconds: boolean }} props
+ */
 function Tick({ at, part, seconds }) {
   const edge = part < 0.02 ? "first" : part > 0.98 ? "last" : null;
   return html`<li class=${edge} style=${{ left: `${part * 100}%` }}>${clock(new Date(at).toISOString(), seconds)}</li>`;
 }
 
-export function Line({ day, bounds, visit, moment, scrub, look }) {
-  const view = useZoom(bounds, moment),
+/**
+ * `scrub(at)` looks at a moment [ms since 1970], `look(part)` at a visit or at what was between two.
+ * @typedef {{ scrub: (at: number) => void, look: (part: Stretch) => void }} Looks
+ * @param {{ day: Day, bounds: Times, visit: Stretch | null, moment: number } & Looks} props
+ */
+export function Line({ day, bounds: whole, visit, moment, scrub, look }) {
+  const view = useZoom(whole, moment),
     [begin, end] = view.shown,
-    x = (at) => ((at - begin) / (end - begin)) * WIDE;
+    x = (/** @type {number} */ at) => ((at - begin) / (end - begin)) * WIDE;
   const { times: hours, seconds } = ticks(view.shown);
-  const iso = (at) => new Date(at).toISOString();
+  const iso = (/** @type {number} */ at) => new Date(at).toISOString();
   return html`<section class="part line" aria-label=${t("day.scrub")}>
     <svg viewBox="0 0 ${WIDE} ${HIGH}" preserveAspectRatio="none" aria-hidden="true" ...${view.handlers}
-      onClick=${(e) => view.wasDrag() || scrub(view.timeAt(e))}>
+      onClick=${(/** @type {MouseEvent} */ e) => view.wasDrag() || scrub(view.timeAt(e))}>
       <rect class="road" x="0" y="22" width=${WIDE} height="40" rx="6" />
       ${hours.map((at) => html`<line class="hour" x1=${x(at)} x2=${x(at)} y1="14" y2="70" />`)}
       ${day.between?.map(
@@ -85,7 +94,7 @@ export function Line({ day, bounds, visit, moment, scrub, look }) {
       aria-valuetext="${clock(iso(moment))}${visit ? `, ${around(visit)}` : ""}"
       onKeyDown=${(/** @type {KeyboardEvent} */ e) => view.typed(e, scrub, STEP)}
       onInput=${typed((text) => scrub(Number(text)))} /></label>
-    <${ZoomButtons} view=${view} bounds=${bounds} />
+    <${ZoomButtons} view=${view} bounds=${whole} />
     ${
       day.marks?.length > 0 &&
       html`<ul class="marks">${day.marks.map(

@@ -1,6 +1,7 @@
 // @ts-check
 // The day: a time line to go along, visit by visit, with what happened, its why, its numbers, and what would have been.
 /** @import { Day, Entry as Written, Entries, Stretch, Visit } from "../types" */
+/** @import { Sentence } from "../sentence.js" */
 import { command } from "../commands.js";
 import { JOB, get, listen, live } from "../live.js";
 import { Entry, Why, question } from "../now/entries.js";
@@ -71,9 +72,9 @@ function nearest(entries, moment) {
 function Around({ name, visit, moment, chosen, choose, change }) {
   const [entries, set] = useState(/** @type {Written[] | null} */ (null)),
     [failed, fail] = useState(""),
-    [why, ask] = useState(null),
-    [edited, edit] = useState(null),
-    of = useRef(null);
+    [why, ask] = useState(/** @type {Written | null} */ (null)),
+    [edited, edit] = useState(/** @type {Sentence | null} */ (null)),
+    of = useRef(/** @type {number | null} */ (null));
   useEffect(() => {
     const from = visit?.from ?? -1;
     if (of.current !== from) set(null); // of another visit; one that goes on keeps what is shown

@@ -1,6 +1,7 @@
 // @ts-check
 // The conversation: its last lines, what the robot says and does now, and a text for it to say.
 /** @import { Entry, Robot } from "../types" */
+/** @import { Sentence } from "../sentence.js" */
 import { command } from "../commands.js";
 import { isHere, live } from "../live.js";
 import { inPageLanguage } from "../quoted.js";
@@ -25,7 +26,17 @@ import { Prepared, usePrepared } from "./prepared.js";
 
 const LINES = 10;
 
-/** The lines that an entry of the journal is in the conversation: what the visitor said, then what the robot says. */
+/**
+ * A line of the conversation: of the visitor, with how sure the ears were (0 to 1), or of the `robot`.
+ * @typedef {{ robot?: boolean, sure?: number | null, language?: string, sentence?: Sentence }} Speech
+ * @typedef {{ key: string, at: string, text: string } & Speech} Spoken
+ */
+
+/**
+ * The lines that an entry of the journal is in the conversation: what the visitor said, then what the robot says.
+ * @param {Entry} entry
+ * @returns {Spoken[]}
+ */
 function linesOf(entry) {
   const { position, at_time: at, data, heard, commands = [] } = entry;
   const speech = heard && typeof data?.result === "string";
@@ -46,8 +57,8 @@ function linesOf(entry) {
  * @param {{ robot: Robot }} props
  */
 export function Lines({ robot }) {
-  const list = useRef(null),
-    [edited, edit] = useState(null),
+  const list = useRef(/** @type {HTMLOListElement | null} */ (null)),
+    [edited, edit] = useState(/** @type {Sentence | null} */ (null)),
     mine = live.told.filter((one) => one.robot === robot.robot);
   const lines = mine.flatMap(linesOf).slice(-LINES),
     last = lines.at(-1)?.key;
@@ -69,7 +80,7 @@ export function Lines({ robot }) {
           line.sentence &&
           may("author") &&
           html` <button type="button" class="plain edit-sentence" title=${t("sentence.edit")}
-          aria-label=${t("sentence.of", { text: line.text })} onClick=${() => edit(line.sentence)}>✎</button>`
+          aria-label=${t("sentence.of", { text: line.text })} onClick=${() => edit(line.sentence ?? null)}>✎</button>`
         }
       </li>`,
     )}</ol>
