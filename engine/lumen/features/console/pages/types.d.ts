@@ -338,7 +338,7 @@ export interface Skill {
   name: string;
   file?: string;
   description: Texts;
-  /** How it is performed: `python`, `module`, `program` …, with its `target`. */
+  /** How it is performed: `python`, `command` or `module`, with its `target`. */
   kind: string;
   target?: string;
   arguments: Record<string, ArgumentSchema>;
