@@ -114,7 +114,7 @@ class Camera:
 
     def shown(self) -> str:
         """Return the text of the page."""
-        return str(self.driver.find_element(By.TAG_NAME, "body").text)
+        return str(self.driver.execute_script("return document.body?.innerText ?? ''"))
 
     def sees(self, text: str) -> None:
         """Wait until the page shows a text."""

@@ -22,7 +22,7 @@ Evaluate = Callable[[Scope], Any]
 
 
 def both(*operands: Callable[[], Any]) -> bool:
-    """Return CEL's `&&` of operands, which are called in order: False if any is False, else its first error, else True.
+    """Return CEL's `&&` of operands, which are called in order: False if any is False, else True.
 
     Raises the first error of an operand if no operand is False.
     """

@@ -71,7 +71,7 @@ def _on_arrays(part: FormulaPart) -> Formula:
 
 
 class _Compiler:
-    """Compiles the tree of a checked formula to functions: lazy ones for numbers, else on whole arrays."""
+    """Compiles the tree of a checked formula to functions: lazy ones for numbers, eager ones for whole arrays."""
 
     def __init__(self, m: Arithmetic, names: Sequence[str]) -> None:
         self._m, self._names = m, {name: i for i, name in enumerate(names)}

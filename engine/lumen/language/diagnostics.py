@@ -197,7 +197,7 @@ def nearest(word: object, candidates: Iterable[str]) -> str:
 
 
 def _is_slip(word: str, meant: str) -> bool:
-    """Return True if few letters differ; words with many different letters may be similar only by chance."""
+    """Return True if few letters differ, or one begins or ends with the other; also for the last part of `meant`."""
     word, meant = word.lstrip("-"), meant.lstrip("-")  # the hyphens of options
     short, long = sorted((word, meant), key=len)
     if long.startswith(short) or long.endswith(short):

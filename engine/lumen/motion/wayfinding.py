@@ -91,7 +91,7 @@ def next_leg(here: Whereabouts, place: HallPlace) -> Walk | None:
 
 
 def most_legs(here: Whereabouts, place: HallPlace) -> int:
-    """Return the number of walks after which a robot that starts here should be there."""
+    """Return the maximum number of walks from `here` to `place`; a robot that needs more has failed."""
     return SPARE_LEGS + 2 * ceil(distance_to(here, place) / LONGEST_LEG)
 
 

@@ -88,7 +88,7 @@ def running_project(path: str | Path | None = None) -> Path:
 
 
 def project_to_run(path: str | Path | None = None) -> Path:
-    """Return the folder like `running_project`, and make a missing copy. Raises UsageError if that fails."""
+    """Return the folder as `running_project` does, but make the copy if needed. Raises UsageError if that fails."""
     root = find_project(path)
     return _copied() if is_substituted(path) else root
 

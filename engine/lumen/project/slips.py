@@ -177,7 +177,7 @@ def _early(line: _Line, marks: LineMarks, first: Mark, last: Mark) -> Iterator[S
 
 
 def _ends(text: str, start: int) -> Iterator[int]:
-    """Yield the offsets at which a text may have been meant to end: before a likely next key, or at the end."""
+    """Yield the offsets at which a text may have been meant to end: before a key, bracket or comment, or at the end."""
     stop = len(text.rstrip())
     if found := re.search(rf", *{KEY}:(?= )", text[start:]):
         yield start + found.start()

@@ -122,7 +122,7 @@ class Approvals:
         self.waiting = tuple(kept)
 
     def decide(self, id: str, by: str, *, go: bool) -> bool:
-        """Let the event with an id go or stay (the oldest for an empty id); return False if there is no such event."""
+        """Let the event with this id happen, or drop it (the oldest for an empty id); return False if there is none."""
         held = next((held for held in self.waiting if id in ("", held.id)), None)
         if held is None:
             return False

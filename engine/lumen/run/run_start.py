@@ -47,7 +47,7 @@ class RunFailure:
 
 
 class Failures:
-    """Reports to people of errors that end a run, or one robot of it; `close` waits until they are sent.
+    """Sends people reports of errors that end a run, or one robot of it; `close` waits until they are sent.
 
     A UsageError is only for the person at the terminal. `tell` is called with the reason if a report can't be sent.
     Without `wanted` nothing is sent, as for stories.

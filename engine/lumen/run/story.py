@@ -281,7 +281,7 @@ class StoryPlayer(Observer):
         return True
 
     def _shows(self, schedule: Schedule, now: float) -> bool:
-        """Return whether the story's clock has reached a time of day since the step began."""
+        """Return whether the story's clock has reached a time of day since the step began; fail if it never will."""
         if self._awaited is None:
             before = self._moment(self._since) - 1
             self._awaited = next_moment(schedule, before, self._exhibition.project.timezone)

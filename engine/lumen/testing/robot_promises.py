@@ -15,7 +15,7 @@ TOLERANCE = 0.05
 
 
 def test_a_command_is_answered_once(trial: RobotTrial) -> None:
-    """`poll` returns one end of each command, whatever becomes of it."""
+    """`poll` reports the end of each command exactly once, whatever becomes of it."""
     trial.start("say", Say("Hello there"))
     trial.start("look", Look(0.2, 0.1))
     trial.answered("say", "look")

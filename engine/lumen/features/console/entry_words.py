@@ -83,7 +83,7 @@ OTHERS = {
 def kind_of(entry: Mapping[str, Any]) -> str:
     """Return `person` for a person's order, else `says`, `does` or `state` by its effect, else how it arrived.
 
-    The latter is `heard`, `timer` or the like. Jumps return `mark`, `person` for a note, or their own kind, such as
+    How it arrived is `heard`, `timer` or the like. A jump is `mark`, `person` for a note, or its own kind, such as
     `start`, `reload` or `resume`.
     """
     said = _said(entry)

@@ -137,7 +137,7 @@ class ScriptReading:
         return found
 
     def take(self, statement: ast.stmt, branch: Branch) -> None:
-        """Follow literal statements; remember what changes a variable in another way."""
+        """Follow a statement: its calls, and assignments of literals; note uncertain changes of variables."""
         if isinstance(statement, ast.Global):
             self.shared.update(statement.names)
         changed = changed_names(statement)

@@ -39,7 +39,7 @@ class FileTape:
         self.write(list(first), self._began)
 
     def write(self, items: Sequence[Recorded], now: float) -> None:
-        """Write items."""
+        """Write items, unless an error of the disk has ended the recording."""
         self._try(lambda file: file.write(items))
 
     def mark(self, why: str, now: float) -> None:

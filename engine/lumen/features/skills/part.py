@@ -89,7 +89,7 @@ class SkillsPart(Part):
 
 
 class PretendedSkillsPart(Part):
-    """The part of an exhibition whose robot only lets the time of skills pass; on a real robot it prints that."""
+    """Replaces the skills' part where no skill's code runs, as in a story; prints a note if the robot is real."""
 
     name = "skills"
     patient = True

@@ -118,7 +118,7 @@ class ScriptTranslator:
         return guarded(self, Unary("!", Binary("in", node, _FALSY)), node)
 
     def value(self, tree: ExpressionNode) -> ExpressionNode:
-        """Return one of Lumen's trees with the value of an ECMAScript tree. Raises ScriptError if it has no
+        """Return a Lumen tree with the same value as an ECMAScript tree. Raises ScriptError if the latter has no
         counterpart.
         """
         match tree:

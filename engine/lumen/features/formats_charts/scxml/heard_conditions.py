@@ -9,7 +9,7 @@ _AND, _END = " && (", ")"
 
 
 def row_condition(key: str, guard: str) -> str:
-    """Return the condition of the row of that key; `guard` is its own in ECMAScript, empty without one."""
+    """Return the condition of the row with that key; `guard` is the row's own in ECMAScript, empty without one."""
     return _asked(key) + (f"{_AND}{guard}{_END}" if guard else "")
 
 
