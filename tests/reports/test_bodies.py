@@ -105,6 +105,9 @@ def test_an_equality_of_a_model_with_a_factor_has_no_motor_either() -> None:
     ("old", "new", "message"),
     [
         ('upper="1.5"', 'uper="1.5"', "`uper` of `<limit>` is left out"),
+        ("<cylinder ", '<cylinder size="1 1 1" ', "`size` of `<cylinder>` is left out"),
+        ('cylinder length="0.05" radius', 'sphere size="0.1" radius', "`size` of `<sphere>` is left out"),
+        ('cylinder length="0.05" radius="0.08"', 'box size="1 1 1" radius="0.08"', "`radius` of `<box>` is left out"),
         ("<limit", "<limits/><limit", "`<limits>` in `<joint>` is left out"),
         ("<axis", '<safety_controller soft_lower_limit="-1"/><axis', "`<safety_controller>` in `<joint>` is left out"),
         ('<mass value="1"/>', '<mas value="1"/>', "`<mas>` in `<inertial>` is left out"),

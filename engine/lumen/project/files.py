@@ -57,8 +57,8 @@ def read_files(root: Path, robot: str = "", kept: KeptContents | None = None) ->
     """Return the content of every file of a project, by its path from the project's root, sorted. Never raises.
 
     Links within the project are followed. Nothing outside the project is read, not even the list of a folder: a folder
-    that lies outside is `Unreadable`. If `robot` is given, the files are read for that robot. A file in `kept` that has
-    not changed is not read again.
+    that lies outside is `Unreadable`, as is a file that can't be read or is too large. If `robot` is given, the files
+    are read for that robot. A file in `kept` that has not changed is not read again.
     """
     read = _Reader(root, kept)
     found = {name: content for name in (MAIN_FILE, FLEET_FILE) if (content := read.file(name)) is not None}

@@ -65,7 +65,11 @@ class LocalAddress:
 
 
 def listen(folder: Path) -> tuple[socket.socket, LocalAddress]:
-    """Return a socket that listens in a folder, and its address. Raises OSError if that is impossible."""
+    """Return a socket that listens in a folder, and its address. Raises OSError if that fails.
+
+    If the folder's path is too long, the socket is in a temporary folder. Without Unix sockets, it is a port on
+    loopback.
+    """
     key = secrets.token_hex(32)
     if not hasattr(socket, "AF_UNIX"):
         listener = socket.create_server(("127.0.0.1", 0))

@@ -9,7 +9,7 @@ from lumen.project.formats.xml_elements import XmlElement
 
 _LOOKS = "only its appearance"
 _SIMULATOR = "a setting for another simulator"
-_SHAPE = Known(frozenset(("size", "radius", "length")))
+_ROUND_BAR = Known(frozenset(("radius", "length")))
 _LINK = Known(frozenset(("link",)))
 KNOWN: FormatTable = {
     "<robot>": Known(
@@ -33,7 +33,9 @@ KNOWN: FormatTable = {
         },
     ),
     "<geometry>": Known(frozenset(("<box>", "<cylinder>", "<sphere>", "<capsule>", "<mesh>"))),
-    **dict.fromkeys(("<box>", "<cylinder>", "<sphere>", "<capsule>"), _SHAPE),
+    "<box>": Known(frozenset(("size",))),
+    "<sphere>": Known(frozenset(("radius",))),
+    **dict.fromkeys(("<cylinder>", "<capsule>"), _ROUND_BAR),
     "<mesh>": Known(frozenset(("filename", "scale"))),
     "<joint>": Known(
         read=frozenset(
