@@ -15,6 +15,7 @@ from tests import ROOT
 from tests.features.console.conftest import Hosted
 from tests.features.console.pages import Browser, Served
 from tests.features.console.test_conversation import violations
+from tests.features.console.test_page_types import faults_of_answers
 from tests.features.console.viewer import Viewer
 from tests.features.skills.stage import stage
 from tests.waiting import HANG, until
@@ -99,6 +100,13 @@ def test_a_malformed_state_of_a_skill_is_left_out() -> None:
         robot.present({"session": "s", "state": "here", "parts": ["robot"], "skill_states": told})
         [process] = robot.to_json(full=True)["processes"]
         assert process["skills"] == ({"a": good} if isinstance(told, dict) else {})
+
+
+def test_the_types_of_the_pages_describe_them(console: Browser, tmp_path: Path) -> None:
+    until(lambda: states(console) and console.robots[0]["modules"], HANG)
+    answers = {"Now": console.get("/api/now").data, "Skills": console.get("/api/skills").data}
+    assert answers["Skills"]["skills"]
+    assert faults_of_answers(answers, tmp_path) == []
 
 
 def test_a_skill_is_begun_by_an_operator_only(own: Hosted, console: Browser) -> None:

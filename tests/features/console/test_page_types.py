@@ -1,7 +1,9 @@
 """The code of the console's pages, checked by TypeScript: types are comments of it, and nothing is compiled."""
 
 import json
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 from tests import ROOT
 from tests.features.console.conftest import Hosted
@@ -38,6 +40,17 @@ def faults_of(code: str, folder: Path) -> list[str]:
     return faults(folder / "tsconfig.json")
 
 
+def faults_of_answers(answers: Mapping[str, Any], folder: Path) -> list[str]:
+    """The faults of answers of the console, each by the name of its type in `types.d.ts`.
+
+    An answer is written as a literal, so a key that its type lacks is a fault too.
+    """
+    code = f"import type {{ {', '.join(answers)} }} from {json.dumps(str(PAGES / 'types'))};\n"
+    for kind, answer in answers.items():
+        code += f"export const of{kind}: {kind} = {json.dumps(answer)};\n"
+    return faults_of(code, folder)
+
+
 def test_the_types_of_the_pages_agree() -> None:
     assert faults(ROOT / "tsconfig.json") == []
 
@@ -50,13 +63,9 @@ def test_each_module_is_checked() -> None:
 
 
 def test_the_types_describe_what_the_server_sends(hosted: Hosted, browser: Browser, tmp_path: Path) -> None:
-    """A key that the types lack is a fault too, since each answer is written as a literal."""
     hosted.send("heard", {"result": "hello"})
     until(lambda: browser.robots[0].get("visitor_said"))
-    code = f"import type {{ {', '.join(ANSWERS)} }} from {json.dumps(str(PAGES / 'types'))};\n"
-    for kind, path in ANSWERS.items():
-        code += f"export const of{kind}: {kind} = {json.dumps(browser.get(path).data)};\n"
-    assert faults_of(code, tmp_path) == []
+    assert faults_of_answers({kind: browser.get(path).data for kind, path in ANSWERS.items()}, tmp_path) == []
 
 
 def test_a_wrong_key_is_found(tmp_path: Path) -> None:

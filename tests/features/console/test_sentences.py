@@ -16,6 +16,7 @@ from lumen.project.files import read_files
 from tests.features.console.conftest import Hosted
 from tests.features.console.pages import Browser, Served
 from tests.features.console.test_conversation import SETTINGS, violations
+from tests.features.console.test_page_types import faults_of_answers
 from tests.features.console.viewer import Viewer
 from tests.waiting import HANG, until
 
@@ -192,6 +193,16 @@ def test_each_sentence_that_was_said_has_its_place(console: Browser) -> None:
     ):
         refused = console.post("/api/sentence", wrong)
         assert (refused.status, list(refused.data)) == (400, ["reason"])
+
+
+def test_the_types_of_the_pages_describe_the_answers(console: Browser, tmp_path: Path) -> None:
+    found = where(console, "Hello Budi!")
+    [at] = found["places"]
+    texts = {**at["texts"], "en": "Welcome {{ context.visiter }}!"}
+    checked = console.post("/api/sentence", {**at, "texts": texts, "write": False}).data
+    assert checked["findings"]
+    assert checked["changes"]
+    assert faults_of_answers({"FoundSentence": found, "Reworded": checked}, tmp_path) == []
 
 
 @pytest.mark.slow
