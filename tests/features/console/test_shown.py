@@ -141,6 +141,7 @@ def test_the_day_is_shown_after_a_crash(viewer: Viewer, copy: Path) -> None:
     with closing(Served(copy)) as served:
         viewer.open(served.console.address, "robot/NAO/day", ready=".visit-list")
         viewer.shows("Budi", ".visit-list li")
+        viewer.run("document.querySelector('.day .entries').scrollIntoView()")  # what is not seen is not laid out
         viewer.shows("my name is Budi", ".day .entry-list")
         viewer.shows("the robot does not answer", ".connection")
 
