@@ -37,7 +37,7 @@ ONLY_IN_DO = Code("only-in-do", "statecharts", ERROR, "a verb that waits is used
 
 
 class Actions:
-    """Reads the actions of one document: `units` as its file declares them, `verbs` as the project does."""
+    """Reads the actions of one document; `units` are those that its file declares, `verbs` those of the project."""
 
     def __init__(
         self,
@@ -225,4 +225,4 @@ COMPUTED_READERS: Mapping[str, Callable[[Actions, Any, NodePath], Action | None]
     "parallel": Actions._parallel,
     "ask": Actions._ask,
 }
-"""The readers of verbs that are no rows of a table. `if` is not among them: it has other keys next to it."""
+"""The readers of verbs that are not in the table of verbs, by verb. `if` is missing: it has other keys beside it."""

@@ -29,7 +29,7 @@ NOT_WITHIN = Code("not-within", "statecharts", ERROR, "the state named in `initi
 
 
 CONTEXT_PREFIX = "context"
-"""The prefix by which `renamed` names keys of the context: `context.name: context.visitor`."""
+"""The prefix of keys of the context under `renamed`, as in `context.name: context.visitor`."""
 
 
 def build_machine(
@@ -50,7 +50,7 @@ def build_machine(
 
     `data` has the shape of behavior.schema.json; any other fault is reported, and the faulty part left out.
 
-    `words` are the words files that the behaviour may name, and `known` the names of all words files, also of
+    `words` are the words files that the behaviour may name, and `known` the names of all words files, including
     unreadable ones. `shared` are the keys that the robots have in common: the behaviours in `performed`, which robots
     perform, can read them. `languages` are the project's; `shipped` is true if the words file `common` comes with
     Lumen. `verbs` and `functions` are those that the project declares.
@@ -220,7 +220,7 @@ class _Builder:
     def within(
         self, home: OutlinedState, source: OutlinedState, body: Any, where: NodePath, written: Any = None
     ) -> list[OutlinedState]:
-        """Return the named states, all of them below `home`; if one is not, report it and return none."""
+        """Return the named states, which must be below `home`; if one is not, report it and return an empty list."""
         found = self.transitions.targets(source, body, where, written) or []
         for state in found:
             if state is home or not state.lies_in(home):

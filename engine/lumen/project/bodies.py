@@ -72,8 +72,8 @@ def build_likes(
 ) -> dict[str, Body]:
     """Return all these bodies and those that are `like` one of them.
 
-    `sources` are the data and the report of each model's file. `names` are the names of all models, also of unreadable
-    ones, so that a reference to one of those is not reported.
+    `sources` are the data and the report of each model's file. `names` are the names of all models, including
+    unreadable ones, so that a reference to one of those is not reported.
     """
     found = dict(bodies)
     for name, (data, report) in sources.items():
@@ -148,7 +148,7 @@ class _Builder:
         return LinkInertia(spec["mass"], tuple(c * self.length for c in spec["centre"]), tuple(spec["inertia"]))
 
     def unit(self, name: str) -> float:
-        """Return the unit of this joint in the file, in SI; 1.0 for the opening of a hand, which has no unit."""
+        """Return the factor from this joint's unit in the file to SI; 1.0 for the opening of a hand."""
         joint = self.data["joints"][name]
         return 1.0 if joint.get("opening") else self.length if joint.get("sliding") else self.angle
 

@@ -13,10 +13,10 @@ _BRACKETED_TEXT = re.compile(r"^(?!\{\w+: )(?=.*[\[{])(?:[\[{][^\[\]{}]*[\]}]|[^
 
 
 def bracketed(text: str, index: int) -> Iterator[Slip]:
-    """Yield slips about texts with brackets that YAML reads as lists or maps, with the line corrected by quotes.
+    """Yield slips about texts with brackets that YAML reads as lists or maps; the corrected line has quotes.
 
-    `text` is line `index`, counted from 0, of a file that is not valid YAML. There are at most two slips: if the line
-    is the text of a key, and if it is within a list or a map.
+    `text` is line `index`, counted from 0, of a file that is not valid YAML. There are at most two slips: one in
+    case the line is the text of a key, and one in case it is within a list or a map.
     """
     key = re.match(rf" *(?:- +)*(?:{KEY}: +)?", text)
     begin, end = key.end() if key else 0, marks_of(text).stop
@@ -38,7 +38,7 @@ def bracketed(text: str, index: int) -> Iterator[Slip]:
 
 
 def slot_signs(text: str) -> str:
-    """Return a text with its slots in normal form: no blank in them, the name before the type."""
+    """Return a text with its slots in normal form: without blanks, and with the name before the type."""
 
     def slot(found: re.Match[str]) -> str:
         one, other = found.groups()

@@ -36,7 +36,7 @@ def resolved(feature: Feature, where: str) -> Any:
     """Return the object that an import string of a feature names.
 
     Raises LumenError with the name of the distribution if the import fails and the feature comes from another
-    installed package. Errors of Lumen's own features pass.
+    installed package. Errors of Lumen's own features are not caught.
     """
     with blaming(feature, where):
         return resolve(where)
@@ -45,8 +45,8 @@ def resolved(feature: Feature, where: str) -> Any:
 def called(feature: Feature, where: str, *arguments: Any, **named: Any) -> Any:
     """Call the function that an import string of a feature names, and return its result.
 
-    LumenErrors of the function pass. Any other fault of a feature from another installed package becomes a LumenError
-    with the name of the distribution.
+    LumenErrors of the function are not caught. Any other error of a feature from another installed package becomes a
+    LumenError with the name of the distribution.
     """
     function = resolved(feature, where)
     with blaming(feature, where, LumenError):
@@ -65,7 +65,7 @@ def called_for_text(feature: Feature, where: str, *arguments: Any, **named: Any)
 def blaming(feature: Feature, where: str, *passed: type[Exception]) -> Iterator[None]:
     """Run code of an import string; raise LumenError with the name of the distribution for any fault of that code.
 
-    Errors of Lumen's own features pass, and so do those of the types in `passed`.
+    Errors of Lumen's own features and of the types in `passed` are raised unchanged, and so is KeyboardInterrupt.
     """
     try:
         yield
@@ -81,7 +81,8 @@ def blaming(feature: Feature, where: str, *passed: type[Exception]) -> Iterator[
 def faults_reported(feature: Feature, what: str, findings: list[Diagnostic]) -> Iterator[None]:
     """Run code of a feature; add a finding that names the distribution for any fault of that code.
 
-    Errors of Lumen's own features pass. `what` is the code, such as "its rule `NAME`".
+    Errors of Lumen's own features and KeyboardInterrupt are raised unchanged. `what` names the code, such as "its rule
+    `NAME`".
     """
     try:
         yield
@@ -97,7 +98,7 @@ def faults_reported(feature: Feature, what: str, findings: list[Diagnostic]) -> 
 def faults_named(fault: Callable[[str], LumenError], method: str) -> Iterator[None]:
     """Run a method of an object that a package made; raise an error that names the package for any fault of it.
 
-    `fault` makes the error, from words such as "raised KeyError: 3 from `send`". LumenErrors pass.
+    `fault` makes the error, from words such as "raised KeyError: 3 from `send`". LumenErrors are not caught.
     """
     try:
         yield
@@ -127,7 +128,7 @@ def faulty(feature: Feature, message: str) -> LumenError:
 
 
 def shown(value: object) -> str:
-    """Return a value as a message quotes it."""
+    """Return the `repr` of a value for a message, cut if it is longer than 80 characters."""
     text = repr(value)
     return text if len(text) <= 80 else f"{text[:77]}…"
 

@@ -64,7 +64,7 @@ from lumen.project.words import build_words
 
 
 def belongs_to(data: Any, body: Body) -> bool:
-    """Return True if a passage suits this body, which needs both postures, and one of the joints if it names any."""
+    """Return True if the body has both postures of a passage, and at least one of its joints if it names any."""
     if not isinstance(data, Mapping) or not {"start", "end"} <= data.keys():
         return True  # its faults are reported elsewhere
     named = set(_joints(data))
@@ -331,7 +331,7 @@ def _built(files: Mapping[str, BuiltFile[T]]) -> dict[str, T]:
 
 
 def _folders(found: ProjectDraft) -> None:
-    """Report folders that can't be read, which also count as `missing`, and folders with a mistaken name."""
+    """Report folders that can't be read, which are added to `missing`, and folders with a mistaken name."""
     for name, content in found.files.items():
         if isinstance(content, Unreadable) and (name in ALL_FOLDERS or name in MISTAKEN_FOLDERS or endings_in(name)):
             hint = "replace it with a folder inside the project: Lumen reads nothing outside the project"
@@ -418,9 +418,9 @@ def _accompany(found: ProjectDraft) -> None:
 def _with_own(
     found: ProjectDraft, folder: str, shared: str, build: Build[T], body: Body
 ) -> tuple[dict[str, T], frozenset[str]]:
-    """Return what the robot's own folder describes, and what the folder for all robots does and it does not replace.
+    """Return what the robot's own folder describes, and what only the folder for all robots describes.
 
-    The second value has the names of the robot's own.
+    The second value is the set of names from the robot's own folder.
     """
     own = _built(_each(found, folder, build, around=body))
     replaced = {file: found.files[file] for name in own if (file := f"{shared}/{name}.yaml") in found.files}

@@ -1,7 +1,7 @@
 """Replace the robot model that lumen.yaml names, for one run: `--model NAME`.
 
 An environment variable holds the choice, so that all processes of the run share it. It is also one of the project's
-files, under a name that no real file has: so the result still depends on the files alone, and so does their hash.
+files, under a name that no real file has, so the result and the hash still depend on the files alone.
 """
 
 import os

@@ -33,7 +33,7 @@ def with_common_words(files: Mapping[str, bytes]) -> Mapping[str, bytes]:
 
 
 def own_files(files: Mapping[str, bytes]) -> Mapping[str, bytes]:
-    """Return the files of a project that people can edit: those without the words that come with Lumen."""
+    """Return the files of a project that people can edit: all but the words that come with Lumen."""
     return (
         {file: content for file, content in files.items() if file != COMMON_FILE}
         if is_shipped(files, COMMON)

@@ -13,7 +13,7 @@ TOO_LARGE = Code("too-large", "text", ERROR, "a file is too large, or nested too
 
 
 MAX_NODE_DEPTH = 100
-"""The maximum depth of nodes within one another in a document."""
+"""The maximum nesting depth of nodes in a document."""
 
 MAX_NODES = 200_000
 """The maximum number of nodes in a document; those of an alias count at each place of use."""

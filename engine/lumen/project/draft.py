@@ -57,13 +57,13 @@ class ProjectDraft:
     """All functions of the project, as expressions see them."""
     messages: dict[str, Mapping[str, Any]] = field(default_factory=dict)
     names: dict[str, frozenset[str]] = field(default_factory=dict)
-    """For each folder the names of all files in it, also of those that could not be built."""
+    """For each folder, the names of all files in it, including those that could not be built."""
     reports: dict[str, DocumentReport] = field(default_factory=dict)
     """The reports by the file of the document."""
     loose: list[Diagnostic] = field(default_factory=list)
     """Findings that belong to no document."""
     missing: set[str] = field(default_factory=set)
-    """The folders that were reported as missing."""
+    """The folders that were reported as missing or unreadable."""
     unsound: set[tuple[str, str, str]] = field(default_factory=set)
     """The JSON Schemas in behaviours that were reported as invalid: behaviour, `types` or `events`, name."""
     root: Path | None = None

@@ -54,7 +54,7 @@ class Expressions:
         self.keys = frozenset((*(data.get("context") or ()), *rounds.known))
         self.functions = words.functions
         self.used: set[str] = set()
-        """The project's functions whose names occur in the expressions, so at least those that are called."""
+        """The project's functions whose names occur in the expressions: all that are called, and perhaps others."""
         names: dict[str, Any] = {
             "functions": self.functions,
             "context": {key: {} for key in self.keys},
@@ -90,7 +90,8 @@ class Expressions:
     def value(self, data: Any, where: NodePath) -> ComputedValue:
         """Return data with each text read as an expression, also in lists and maps; unreadable ones become None.
 
-        Numbers must be finite: values go into messages and snapshots, and JSON has no infinity or NaN.
+        A number that is not finite is reported and becomes None: values go into messages and snapshots, and JSON has no
+        infinity or NaN.
         """
         match data:
             case str():

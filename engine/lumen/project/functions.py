@@ -81,7 +81,7 @@ def joined(
 ) -> tuple[dict[str, FunctionDefinition], dict[str, OwnFunction | None]]:
     """Return the functions without faults, and all functions as expressions see them: None for a faulty one.
 
-    Faults are reported in the function's file. `names` are those of all files, also of unreadable ones.
+    Faults are reported in the function's file. `names` are those of all files, including unreadable ones.
     """
     return _Joining(files, names).join()
 

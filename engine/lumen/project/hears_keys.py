@@ -1,4 +1,4 @@
-"""Read the keys of `hears`: names of phrases or answers, or fields of a `for`, after `not` or `asked`; or `else`."""
+"""Read the keys of `hears`: names of phrases, answers or fields of a `for`, after `not`, `asked` or neither; or `else`."""
 
 import re
 from itertools import pairwise

@@ -22,7 +22,7 @@ HOW = "write `robot: {name: NAO, model: nao}` for one robot, or `robots:` with a
 def build_robots(data: Mapping[str, Any], report: DocumentReport) -> dict[str, RobotSpec]:
     """Return the robots of `robots:` by name, in the order written, or else the one of `robot:`.
 
-    It is reported if the file has both keys, or neither.
+    It is reported if the file has both keys, or neither; in that case, the result is one robot with default settings.
     """
     several = data.get("robots")
     if "robot" in data and several:
@@ -50,7 +50,7 @@ def robot_names(data: Mapping[str, Any]) -> tuple[str, ...]:
 
 
 def told_robots(data: Mapping[str, Any]) -> bool:
-    """Return True if lumen.yaml has `robots:`; then robots are distinguished by name, also on the disk."""
+    """Return True if lumen.yaml has `robots:`; then robots are distinguished by name, even on the disk."""
     return bool(data.get("robots"))
 
 

@@ -28,7 +28,7 @@ ZERO_DURATION = Code("zero-duration", "motions", ERROR, "a motion has no length"
 
 
 MAX_MOTION_KEYS = 200_000
-"""The maximum number of keys of all joints, unrolled; as many as an hour of dancing with every joint on every beat."""
+"""The maximum number of keys and cues after unrolling: an hour of dancing with every joint on every beat."""
 
 _CUES = ("say", "sound", "leds", "hold")
 KEYFRAME_KEYS = (
@@ -56,7 +56,10 @@ class KeyframeReader:
     """The skills that a keyframe may begin."""
 
     def read(self, items: list[Any], path: NodePath, interpolation: Interpolation) -> MotionDefinition:
-        """Return the motion of a list of keyframes and blocks; its times count from the beginning of the list [s]."""
+        """Return the motion of a list of keyframes and blocks, with times from the beginning of the list [s].
+
+        Items with a faulty time are reported and left out.
+        """
         parts: list[tuple[float, MotionDefinition]] = []
         now, moved, count = 0.0, 0.0, 0
         for i, item in enumerate(items):

@@ -29,7 +29,7 @@ _HEADING = re.compile(r"#+\s+(\S+)\s*")
 
 
 def parse_markdown(file: str, content: bytes) -> tuple[Document | None, list[Diagnostic]]:
-    """Return the document of a Markdown file and its faults; None if it has no YAML data at its beginning.
+    """Return the document of a Markdown file and its faults; None if it does not begin with valid YAML data.
 
     No content of the file raises an error.
     """

@@ -57,7 +57,7 @@ def known_words(
 ) -> KnownWords:
     """Return all words that a behaviour can name; a missing file and a name that is defined twice are reported.
 
-    `names` are those of all words files, also of unreadable ones. `shipped` is true if the words file `common` comes
+    `names` are those of all words files, including unreadable ones. `shipped` is true if the words file `common` comes
     with Lumen. Then it adds only names that are not defined elsewhere, in the project's `languages`. `hears` is true if
     the behaviour has `hears`; it then uses the word lists of `common` even if it does not name the file.
     """

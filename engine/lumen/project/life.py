@@ -93,7 +93,7 @@ RESERVED_LIFE = Code("reserved-life", "motions", ERROR, "a style of life is call
 
 
 def build_life(data: Any, report: DocumentReport, *, name: str, body: Body) -> LifeStyle | None:
-    """Return the style that the data of `motions/life/NAME.yaml` describes; None if it is not a map."""
+    """Return the style that the data describes; None if the data is not a map or its units are broken."""
     if not isinstance(data, Mapping) or report.broken(("units",)):
         return None
     if name == STILL:

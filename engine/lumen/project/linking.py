@@ -26,7 +26,7 @@ def link(
 ) -> dict[str, MachineDefinition]:
     """Return these machines by name, each with those that it invokes; invalid invocations are reported.
 
-    `names` are the names of all behaviours, also of unreadable ones, so that a reference to one of those is not
+    `names` are the names of all behaviours, including unreadable ones, so that a reference to one of those is not
     reported.
     """
     linker = _Linker(machines, reports, names)

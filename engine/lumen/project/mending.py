@@ -1,7 +1,7 @@
 """Find the mistake in a file that is not YAML: the change that lets a parser get furthest.
 
 A parser fails late: some lines after an unclosed quote, or where the next state after a misplaced one begins. So
-possible slips are searched in the lines before, and the correction of each is tried. The slip whose correction makes
+possible slips are sought in the lines before, and the correction of each is tried. The slip whose correction makes
 the file valid YAML was the mistake. A corrected text has as many lines as before.
 """
 
@@ -34,10 +34,10 @@ MAX_LINE = 400
 """The maximum length of a line that is searched [characters]: people write shorter ones."""
 
 LINES_BACK = 3
-"""The number of lines before the parser's error in which a wrong sign is searched."""
+"""The number of lines before the parser's error that are searched for a wrong sign."""
 
 QUOTED_LINES_BACK = 400
-"""The number of lines before the parser's error in which an open quote or bracket is searched."""
+"""The number of lines before the parser's error that are searched for an open quote or bracket."""
 
 
 def mistake(

@@ -24,7 +24,7 @@ MAX_COMPLAINTS = 24
 """The maximum number of complaints of a file for which moves are sought: each needs a search of the lines above."""
 
 MAX_CHARACTERS = 300_000
-"""The maximum characters of all trials of a file: less than a second of processor time, as an editor needs."""
+"""The maximum number of characters in all trials of a file: less than a second of work, as an editor needs."""
 
 MAX_LEVELS = 3
 """The maximum number of levels by which a block may be too far in, or out."""

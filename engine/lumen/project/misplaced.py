@@ -49,11 +49,11 @@ def misnamed_for(root: Path, folder: str, name: str) -> Misnamed | None:
 
 
 def listed_in(root: Path, folder: str) -> list[str]:
-    """Return the names in a folder of the project, sorted; none if the folder is outside of the project."""
+    """Return the names in a folder, sorted; none if it can't be listed or lies outside the project."""
     try:
         listed = sorted(os.listdir(root / folder))
         return listed if _is_inside(root, folder) else []
-    except (OSError, RuntimeError):  # the latter for links in a circle
+    except (OSError, RuntimeError):  # RuntimeError: links in a circle
         return []
 
 

@@ -24,8 +24,8 @@ def derived(into: type[D], value: Any) -> D:
 def plain_document(name: str, data: Any) -> tuple[Document | None, list[Diagnostic]]:
     """Return a document of this data, and findings about values that no YAML file could hold; these become null.
 
-    The document is None if the data is too large, as a dict that contains itself is. Instead of a line, the place of a
-    node has its dotted path: `tour (states.idle.on.face)`.
+    Keys that are not texts are reported too, and left out. The document is None if the data is too large, as a dict
+    that contains itself is. Instead of a line, the place of a node has its dotted path: `tour (states.idle.on.face)`.
     """
     reader = _Reader(name)
     plain = reader.read(data, ())

@@ -62,9 +62,9 @@ _WALKING_SENSORS = ("gyro", "accelerometer")
 class RoleReader:
     """Reads the roles of one file.
 
-    `known` returns True if a joint of this name exists, and else reports it at the path. `given` are the keys of the
-    file, some of which a role may need; `hands` are the joints with an opening instead of an angle. Only a body that is
-    `modelled` in an MJCF needs to name its wheels.
+    `known` returns True if a joint of this name exists; otherwise, it reports that at the path. `given` are the keys of
+    the file, some of which a role may need; `hands` are the joints with an opening instead of an angle. Only a body
+    that is `modelled` in an MJCF needs to name its wheels.
     """
 
     def __init__(

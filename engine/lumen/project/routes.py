@@ -13,7 +13,7 @@ DEFAULT_LATENCY = 0.15
 """The assumed age of a message without a `time` if its route has no `latency` [s]."""
 
 PERIODS: Mapping[str, float] = {"s": 1.0, "min": 60.0}
-"""The units of time of `most` of a route [s]."""
+"""The units of time in `most` of a route, in [s]."""
 _USUAL = {COMMAND: Carried.COMMAND, STOP: Carried.STOP}
 """The way in which a route is carried if its name implies it."""
 
@@ -21,7 +21,7 @@ _USUAL = {COMMAND: Carried.COMMAND, STOP: Carried.STOP}
 def build_routes(
     data: Mapping[str, Any], report: DocumentReport, where: NodePath = ("routes",), stand: str = ""
 ) -> dict[str, Route]:
-    """Return the routes by name, in the order written; `{stand}` in keys becomes the stand's name, if it has one."""
+    """Return the routes by name, in the order written; `{stand}` in keys becomes `stand`, unless that is empty."""
     return {name: build_route(name, row, report, (*where, name), stand) for name, row in data.items()}
 
 
@@ -66,7 +66,10 @@ def _rate(data: Mapping[str, Any]) -> float | None:
 def duration(
     data: Mapping[str, Any], key: str, report: DocumentReport, where: NodePath, *, positive: bool = False
 ) -> float | None:
-    """Return the duration under a key [s]; None if the key is absent, or if it can't be read, which is reported."""
+    """Return the duration under a key [s]; None if the key is absent.
+
+    A duration that can't be read, and if `positive` one of 0, is reported, and the result is None.
+    """
     if key not in data:
         return None
     length = seconds(data[key])

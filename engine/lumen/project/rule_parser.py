@@ -52,7 +52,7 @@ class RuleText(NamedTuple):
 
 
 class RuleSyntaxError(Exception):
-    """Raised if a text is not a rule; `word` is the first one that is wrong."""
+    """Raised if a text is not a rule; `word` is the first wrong one, empty if the rule ends too early."""
 
     def __init__(self, message: str, word: RuleWord, hint: str = "") -> None:
         super().__init__(message)

@@ -37,7 +37,7 @@ class Rulebook:
         self.operators = data.get("operators") or {}
 
     def blocks(self) -> list[RuleBlock]:
-        """Return the rules under `rules:`, then those of each of `blocks:`."""
+        """Return the rules under `rules:`, then those of each of `blocks:`; report a controller without rules."""
         own = RuleBlock(tuple(self.rules(("rules",), self.data.get("rules") or ())), self.combination({}))
         blocks = [own] if own.rules else []
         for name, spec in (self.data.get("blocks") or {}).items():

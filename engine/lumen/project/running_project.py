@@ -17,7 +17,7 @@ from lumen.project.project_folders import MAIN_FILE, PROJECT_FOLDERS
 from lumen.upkeep.own_folders import state_folder
 
 MAX_FOLDERS = 5_000
-"""The maximum number of folders to search, in a fraction of a second."""
+"""The maximum number of folders to search, which takes a fraction of a second."""
 NAMED = 8
 _PASSED_OVER = ("node_modules", "__pycache__", "site-packages")
 
@@ -82,13 +82,19 @@ def is_substituted(path: str | Path | None) -> bool:
 
 
 def running_project(path: str | Path | None = None) -> Path:
-    """Return the folder of a project like `find_project`, but the copy of the shipped exhibition if there is one."""
+    """Return the result of `find_project`, but instead of the shipped exhibition its copy, if there is one.
+
+    Raises UsageError as `find_project` does.
+    """
     root = find_project(path)
     return copy if is_substituted(path) and (copy := copy_of_shipped()).is_dir() else root
 
 
 def project_to_run(path: str | Path | None = None) -> Path:
-    """Return the folder as `running_project` does, but make the copy if needed. Raises UsageError if that fails."""
+    """Return the result of `running_project`, after making the copy if it is needed and missing.
+
+    Raises UsageError if that fails, or as `find_project` does.
+    """
     root = find_project(path)
     return _copied() if is_substituted(path) else root
 

@@ -37,9 +37,10 @@ def check_schema(document: Document, kind: str, report: DocumentReport, verbs: O
     """Return the document's data without what its schema refuses; each error is reported at its node.
 
     A broken node is removed with its key, or as an item of its list. One that lacks a required key is removed as a
-    whole, except the root, whose required keys the builder checks itself. The result is None if nothing is left. The
-    report's document becomes the pruned one, so that paths into the returned data have the right places; the names that
-    were removed are in its `lost`. `verbs` are those that the project declares.
+    whole, except the root, whose required keys the builder checks itself. The result is None if nothing is
+    left, or if the file is of another kind or nested too deeply, which is reported. The report's document becomes the
+    pruned one, so that paths into the returned data have the right places; the names that were removed are in its
+    `lost`. `verbs` are those that the project declares.
     """
     said: set[NodePath] = set()
     moved: Mapping[Complaint, str] = {}

@@ -20,7 +20,8 @@ def read_fields(kind: type[T], data: Mapping[str, Any], **given: Any) -> T:
     """Return an object of a dataclass, whose fields are read from the keys of their names.
 
     `given` are fields that the caller has read because their keys have other names or units. A field without a key, or
-    with an empty one, gets its default. The annotation of a field decides how its value is read:
+    with the value None, gets its default; TypeError is raised if it has none. The annotation of a field decides how its
+    value is read:
     - An `int` is converted from any number, such as a port `8080.0`; a member of an enumeration from its value.
     - A tuple is read from a list, or from one text; a mapping from a map.
     - A dataclass is read from a map; any other value becomes its first field.
@@ -92,7 +93,7 @@ def is_section(key: str) -> bool:
 
 
 def with_sections(schema: dict[str, Any]) -> dict[str, Any]:
-    """Return the JSON Schema of lumen.yaml with the sections that it lacks.
+    """Add the sections of features that the JSON Schema of lumen.yaml lacks, and return the same schema.
 
     A section whose own schema can't be used accepts everything, until it is read and that is reported.
     """

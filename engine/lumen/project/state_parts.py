@@ -107,7 +107,7 @@ def invoked(entry: OutlinedState) -> Iterator[tuple[NodePath, str, dict[str, Any
 
 
 def check_ids(outline: BehaviorOutline, report: DocumentReport) -> None:
-    """Report two behaviours that can run at the same time and have the same id."""
+    """Report invoked behaviours that can run at the same time and have the same id."""
     found: dict[str, list[tuple[OutlinedState, NodePath]]] = {}
     for entry in outline.entries.values():
         for where, id, row in invoked(entry):

@@ -1,4 +1,4 @@
-"""Files of a project that nothing reads: in a folder that is none of a project's, or with another ending."""
+"""Files of a project that nothing reads, because of their folder or the ending of their name."""
 
 import os
 from collections.abc import Callable, Collection, Iterator
@@ -29,9 +29,9 @@ from lumen.project.project_folders import (
 )
 
 MAX_DEPTH = 3
-"""How deep in a folder that is not read its first file is searched."""
+"""The number of levels of an unread folder that are searched for its first file."""
 MAX_LISTED = 500
-"""The most entries of a folder that is not read among which that file is searched."""
+"""The maximum number of entries of a folder that are searched for that file."""
 
 _SCHEMAS = MESSAGES.partition("/")[0]
 _SCHEMA_ENDING = ".schema.json"
@@ -169,7 +169,7 @@ def _message_of(file: str) -> str:
 
 
 def _at_root(root: Path, look: Callable[[Path], object]) -> Iterator[Unread]:
-    """Yield the first file of each folder of the root whose name is nearly that of a project's folder."""
+    """Yield stray schemas, and the first file of each folder of the root with nearly the name of a project's folder."""
     look(root)
     known = {PurePosixPath(path).name: path for path in (*reversed(tuple(KINDS)), *PROJECT_FOLDERS, DRIVERS_FOLDER)}
     schemas = {f"{kind}{_SCHEMA_ENDING}" for kind in FILE_KINDS}

@@ -1,7 +1,7 @@
 """Compose the nodes of a YAML file from libyaml's events.
 
-libyaml's own composer is recursive: 60,000 brackets end the process. Here the depth and the number of nodes are counted
-with each event, and reading stops at a limit. An alias counts as all nodes of the node that it refers to.
+libyaml's own composer is recursive: 60,000 brackets crash the process. Here the depth and the number of nodes are
+counted with each event, and reading stops at a limit. An alias counts as all nodes of the node that it refers to.
 """
 
 from collections.abc import Callable, Mapping

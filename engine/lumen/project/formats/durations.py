@@ -1,4 +1,4 @@
-"""Convert delays between CSS, which SCXML uses (`1.5s`, `100ms`), and Lumen."""
+"""Convert delays in the form of CSS, which SCXML uses (`1.5s`, `100ms`), to Lumen's, and back."""
 
 import re
 
@@ -11,7 +11,7 @@ _FACTORS = {"": 1.0, "ms": 1.0, "s": 1e3, "min": 60e3, "m": 60e3, "h": 3600e3}
 def milliseconds(text: str) -> float | None:
     """Return the delay [ms]; None if the text is not a valid delay or exceeds `MAX_DELAY`.
 
-    A bare number is in ms, as in several tools. An empty text is no delay: 0.
+    A bare number is in ms, as in several tools. The result for an empty text is 0.
     """
     match = _DELAY.fullmatch(text.strip()) if text.strip() else None
     if match is None:

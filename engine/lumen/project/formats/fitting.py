@@ -1,4 +1,4 @@
-"""Fit curves to a body's limits beyond the range of each joint: coupled ranges, curved paths and speeds."""
+"""Fit curves to a body's limits other than the range of a joint at a key: coupled ranges, curved paths, speeds."""
 
 from bisect import bisect_left
 from collections.abc import Iterable, Iterator
@@ -40,7 +40,7 @@ def too_fast(curves: JointCurves, body: Body) -> list[Excess]:
 
 
 def slowed(curves: JointCurves, body: Body) -> JointCurves:
-    """Return the curves with more time before keys that are too fast, for all joints alike to keep them in step."""
+    """Return the curves with more time before keys that are too fast; all joints are delayed alike, to stay in step."""
     for _ in range(MAX_FITS):
         fast = too_fast(curves, body)
         if not fast:

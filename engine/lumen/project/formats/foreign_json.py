@@ -13,7 +13,8 @@ _MAX_INTEGER_DIGITS = 20
 def foreign_json(text: str | bytes) -> Any:
     """Return the data of a JSON text.
 
-    Raises ValueError for invalid JSON or a number that is too large, RecursionError for data that is nested too deeply.
+    Raises ValueError for invalid JSON, NaN, infinity or a number that is too large, and RecursionError for data that is
+    nested too deeply.
     """
     return json.loads(text, parse_constant=_refuse, parse_int=_integer, parse_float=_number)
 

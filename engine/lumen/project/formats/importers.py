@@ -17,7 +17,7 @@ from lumen.project.formats.motion_writer import MotionWriter
 class FileReader(Protocol):
     """Converts a file to the data of one of Lumen's YAML files, and lists what can't be converted.
 
-    `title` is for formats whose files contain no name. Raises ForeignFileError.
+    `title` is for formats whose files contain no name. Raises ForeignFileError for a file that can't be read.
     """
 
     def __call__(self, file: str, content: bytes, title: str) -> tuple[dict[str, Any], list[Diagnostic]]: ...
@@ -26,7 +26,8 @@ class FileReader(Protocol):
 class RobotReader(Protocol):
     """Converts a model of a robot to the text of a body file, findings about it, and further files by path.
 
-    `output` is where the body file will be, None if it is printed; `title` names the robot. Raises ForeignFileError.
+    `output` is where the body file will be, None if it is printed; `title` names the robot. Raises ForeignFileError
+    for a file that can't be read.
     """
 
     def __call__(
@@ -83,7 +84,7 @@ def format_tables() -> Mapping[str, FormatTable]:
 
 
 class MotionReader(Protocol):
-    """Reads the curves of all joints from a file of another tool. Raises ForeignFileError."""
+    """Reads the curves of all joints from another tool's file. Raises ForeignFileError for one that can't be read."""
 
     def __call__(self, file: MotionFile, findings: ConversionFindings) -> JointCurves: ...
 

@@ -20,7 +20,7 @@ class Known:
     meaningless: Mapping[str, str] = field(default_factory=dict)
     """The names that have no effect on a robot, with the reason."""
     lowercase: bool = False
-    """True if the format ignores case."""
+    """True if the format ignores case; the names above are then in lower case."""
 
     def losses(self, names: Iterable[str]) -> Iterator[tuple[str, str]]:
         """Yield each of these names that is lost or unknown, with a hint."""

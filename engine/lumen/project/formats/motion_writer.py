@@ -32,7 +32,7 @@ class MotionWriter:
     def data(self, curves: JointCurves, description: str) -> dict[str, Any]:
         """Return the file's data, with `keyframes` empty if no joint moves.
 
-        The motion begins at the robot's current pose, and the robot keeps the last one.
+        The motion begins at the robot's current pose, and the robot keeps the motion's last pose.
         """
         possible = {joint: self._possible(joint, points) for joint, points in self._known(curves).items()}
         known = self._later({joint: points for joint, points in possible.items() if points})

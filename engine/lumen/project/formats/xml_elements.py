@@ -9,7 +9,7 @@ from lumen.language.diagnostics import Place
 from lumen.project.formats.conversion_findings import broken, check_size
 
 MAX_XML_LEVELS = 100
-"""The maximum depth of elements inside each other."""
+"""The maximum nesting depth of elements."""
 
 MAX_XML_ELEMENTS = 50_000
 """The maximum number of elements in a file, if a format sets no other limit."""
@@ -74,7 +74,7 @@ def parse_xml(file: str, content: bytes, namespace: str = "", *, most: int = MAX
     """Return the root of a file with at most `most` elements.
 
     Raises ForeignFileError if the file is not XML, is too large, or has a document type or entities. Tags of
-    `namespace`, and those without a namespace, are written without one.
+    `namespace`, and those without a namespace, are written without one. Attributes such as `xml:id` are left out.
     """
     check_size(file, content)
     return _XmlReader(file, namespace, most).read(content)

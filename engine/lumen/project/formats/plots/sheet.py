@@ -21,7 +21,7 @@ class PlotLine:
     """The values; NaN is a gap in the curve."""
     label: str = ""
     style: int = 0
-    """The number of the line style, counted modulo the styles that there are; they differ in dashes and shade."""
+    """The number of the line style, modulo the number of styles; styles differ in dashes and shade."""
     filled: bool = False
     points: bool = False
     """True to draw a dot at each point and no line."""
