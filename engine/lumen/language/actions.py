@@ -20,7 +20,7 @@ class Expression:
     where: NodePath = field(default=(), compare=False)
     """The path of the text in the document."""
     written: str = field(default="", compare=False)
-    """The author's text if it differs from `source`, because a `for` replaced names by paths; else empty."""
+    """The author's text if it differs from `source`, because names or functions in it were replaced; else empty."""
 
     @property
     def shown(self) -> str:
@@ -75,7 +75,7 @@ class Assign:
 
 
 def context_key(way: str) -> str:
-    """Return the key of the context that a key of `assign` is, or lies within."""
+    """Return the key of the context that a key of `assign` names, or leads into."""
     return way.partition(".")[0]
 
 

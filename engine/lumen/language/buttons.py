@@ -24,7 +24,7 @@ class Button:
     confirm: Confirmation = ""
     """`hold` if the button must be held down, `ask` if the press must be confirmed, empty for neither."""
     key: str = ""
-    """The only key of a keyboard that presses the button; empty for none."""
+    """The key on the keyboard that presses the button; empty for none."""
     where: NodePath = field(default=(), compare=False)
 
     def named(self, name: str) -> bool:

@@ -206,7 +206,7 @@ MotorCommand = Posture | Walk | Move | Look | Leds | Volume | PlaySound | Stop |
 """The verbs of the YAML that the robot itself performs. A new one is added here and in `verbs.py`."""
 
 VerbCommand = MotorCommand | Play | Track | Language | GoTo | Do
-"""Verbs of the YAML that are their own commands: `GoTo` and `Do` alone can contain expressions, in texts.
+"""Verbs of the YAML that are commands themselves. Only the texts of `GoTo` and `Do` can contain expressions.
 
 `Do` is the open member: it carries the verbs that features add (`lumen.language.added_verbs`).
 """

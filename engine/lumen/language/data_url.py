@@ -9,7 +9,7 @@ JPEG_URL = f"data:{JPEG_TYPE};base64,"
 
 
 class DataUrl(str):
-    """`data:image/jpeg;base64,…` of a JPEG: a text whose bytes are in `data`."""
+    """The text `data:image/jpeg;base64,…` of a JPEG, which also keeps the picture's bytes, in `data`."""
 
     __slots__ = ("data",)
 

@@ -46,7 +46,10 @@ def duration_hint(text: object) -> str:
 
 
 def seconds(text: object) -> float | None:
-    """Return the duration [s] in a text such as `500ms`, `1.5s`, `2min` or `1h`; None for other or too long ones."""
+    """Return the duration [s] in a text such as `500ms`, `1.5s`, `2min` or `1h`; None for any other value.
+
+    A duration longer than MAX_DURATION is not accepted either.
+    """
     match = _DURATION.fullmatch(text) if isinstance(text, str) else None
     duration = float(match[1]) * _SECONDS[match[2]] if match else None
     return duration if duration is not None and duration <= MAX_DURATION else None

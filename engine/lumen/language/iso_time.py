@@ -7,7 +7,7 @@ Precision = Literal["seconds", "milliseconds"]
 
 
 def iso_time(at: float, precision: Precision = "milliseconds", *, offset: bool = False) -> str:
-    """Return `2026-11-22T18:00:00.000Z`; with `offset`, `+00:00` instead of `Z`, as in messages and kept files.
+    """Return a time as `2026-11-22T18:00:00.000Z`; with `offset`, `+00:00` replaces `Z`, as in messages and kept files.
 
     Raises ValueError, OverflowError or OSError for a time outside the years 1 to 9999.
     """
@@ -16,7 +16,7 @@ def iso_time(at: float, precision: Precision = "milliseconds", *, offset: bool =
 
 
 def time_of(text: str) -> float:
-    """Return the time of an ISO 8601 text; without an offset it is local. Raises ValueError."""
+    """Return the time of an ISO 8601 text; without an offset it is local. Raises ValueError for other texts."""
     try:
         return datetime.fromisoformat(text).timestamp()
     except (OverflowError, OSError) as error:
@@ -24,15 +24,15 @@ def time_of(text: str) -> float:
 
 
 def time_of_day(text: str) -> time:
-    """Return the time of day of `9:03`, `14:03` or `14:03:20`. Raises ValueError."""
+    """Return the time of day of `9:03`, `14:03` or `14:03:20`. Raises ValueError for a text in another form."""
     return time.fromisoformat(text.zfill(5) if text.count(":") == 1 else text.zfill(8))
 
 
 def local_time(at: float) -> str:
-    """Return `2026-11-22 19:00:00`, as the clock of this machine shows it."""
+    """Return a time as the clock of this machine shows it: `2026-11-22 19:00:00`."""
     return f"{datetime.fromtimestamp(at):%Y-%m-%d %H:%M:%S}"
 
 
 def file_stamp(at: float) -> str:
-    """Return `2026-11-22T18-00-00Z`: in UTC, for the name of a file."""
+    """Return a time in UTC for the name of a file: `2026-11-22T18-00-00Z`."""
     return f"{datetime.fromtimestamp(at, UTC):%Y-%m-%dT%H-%M-%SZ}"

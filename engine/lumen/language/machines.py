@@ -32,7 +32,7 @@ class Approval:
     within: float | None = None
     """The time limit [s]; None for none."""
     otherwise: Literal["go", "stay"] = "stay"
-    """The decision when the time is over."""
+    """The decision when the time is over: `go` takes the transition, `stay` drops its event."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -173,7 +173,7 @@ class State:
     gestures: Literal["none", ""] = ""
     """`none` if the robot speaks without gestures in the state; else empty."""
     buttons: tuple[Button, ...] = ()
-    """Buttons for the operator, also while a state within is active."""
+    """Buttons for the operator, which are also available while a state within is active."""
     for_each: ForEach | None = None
     where: NodePath = field(default=(), compare=False)
 

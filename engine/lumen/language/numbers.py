@@ -5,7 +5,7 @@ from typing import TypeGuard
 
 
 def is_number(value: object) -> TypeGuard[int | float]:
-    """Return True for an int or a float, also a NaN or an infinity; False for a bool and anything else."""
+    """Return True for an int or a float, including NaN and infinity; False for a bool and anything else."""
     return isinstance(value, int | float) and not isinstance(value, bool)
 
 

@@ -36,7 +36,10 @@ class PersonName:
         return bool(self._spans(name_key(text)))
 
     def taken_from(self, text: str) -> str:
-        """Return the text without the name; if it contained the name, in NFC and without spaces at its ends."""
+        """Return the text without the name; unchanged if it does not contain the name.
+
+        A changed text is in NFC, without spaces at its ends, and empty if the name can't be cut out of it.
+        """
         while self.is_named_in(text):
             shorter = self._cut(unicodedata.normalize("NFC", text))
             if shorter == text:

@@ -53,7 +53,7 @@ class Base:
     """The base of a body."""
 
     kind: str = FIXED
-    """The name of a row `bases` of a feature."""
+    """The name of a feature's row in the table `bases`."""
     left: str = ""
     """The joint of the left driven wheel in the MJCF; empty if the base has no wheels."""
     right: str = ""

@@ -115,7 +115,7 @@ class Route:
     latency: float = 0.15
     """The assumed age of a body without a `time` [s]."""
     most: float | None = None
-    """The maximum rate of accepted messages [1/s]."""
+    """The maximum rate of accepted messages [1/s]; None for the default, which `rate` includes."""
     alias: str = ""
     """A second key while one robot is on the bus: messages are sent under both and received under either."""
     of: str = ""

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 SHARED = "shared"
-"""The name of all of them in expressions, and the key of the context that holds them."""
+"""The name of the shared values in expressions, and the key of the context that holds them."""
 SHARED_EVENT = "shared.changed"
 """The event for values that another robot has assigned; its data are these values, by name."""
 

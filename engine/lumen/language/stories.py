@@ -28,7 +28,7 @@ class Arrive:
 
 @dataclass(frozen=True, slots=True)
 class Leave:
-    """`visitor: leaves`."""
+    """`visitor: leaves`: the visitor goes away."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,7 +116,7 @@ class AwaitTime:
 
 @dataclass(frozen=True, slots=True)
 class Expect:
-    """`expect:`: the story fails unless all of these conditions become true `within` this time [s].
+    """`expect:`: the story fails unless all of these conditions become true `within` the time limit.
 
     Only texts, motions, verbs and messages since the last fulfilled `expect` count. A field that is None sets no
     condition.

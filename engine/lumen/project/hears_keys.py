@@ -1,4 +1,4 @@
-"""Read the keys of `hears`: names of phrases, answers or fields of a `for`, after `not`, `asked` or neither; or `else`."""
+"""Read the keys of `hears`: names of phrases, answers or fields of a `for`, maybe after `not` or `asked`; or `else`."""
 
 import re
 from itertools import pairwise
