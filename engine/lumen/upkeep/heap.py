@@ -11,8 +11,8 @@ LARGE = 128 * 1024
 def give_back() -> None:
     """Make glibc return freed memory from now on; with another C library nothing changes.
 
-    By default glibc raises that size in a long run and keeps freed blocks between live data: a running exhibition grew
-    by 0.5 MB with each saved file.
+    By default, glibc raises the size from which blocks are returned when freed, and keeps smaller ones between live
+    data: a running exhibition grew by 0.5 MB with each saved file.
     """
     try:
         mallopt = ctypes.CDLL(None).mallopt

@@ -174,7 +174,7 @@ class AnswerPipe:
         self._answers.flush()
 
     def answer(self, judge: Callable[[], Any], seconds: float = 0.0) -> None:
-        """Send the return value or the exception of `judge`.
+        """Send the return value or the exception of `judge`; a MemoryError is raised instead.
 
         The system ends the process if that lasts longer than `seconds` [s]; 0 sets no limit.
         """
@@ -212,7 +212,10 @@ def answering(max_memory: int | None = None) -> Iterator[AnswerPipe]:
 
 
 def limit_time(seconds: float) -> None:
-    """Let the system end this process after `seconds` [s], even if its parent is gone; 0 removes the limit."""
+    """Let the system end this process after `seconds` [s], even if its parent is gone; 0 removes the limit.
+
+    On Windows, there is no limit.
+    """
     if hasattr(signal, "setitimer"):
         signal.setitimer(signal.ITIMER_REAL, seconds)
 

@@ -36,7 +36,7 @@ class Backoff:
 
 
 BURST = 5.0
-"""The length of a silence after which all its messages may come at once [s]; of a longer one, only so many."""
+"""The length of silence whose unused messages may all come at once [s]; a longer silence allows no more."""
 MAX_KEYS = 10_000
 """The maximum number of keys that are counted at a time: those used last."""
 MAX_SENDERS = 16
@@ -84,7 +84,10 @@ class RateLimiter:
         return f"{key} {sender}"
 
     def wait(self, key: str, rate: float) -> float:
-        """Count a message and return 0 if the key allows it at `rate` per second; else return the time to wait [s]."""
+        """Count a message and return 0 if the key allows it at `rate` per second; else return the time to wait [s].
+
+        `rate` must be above 0.
+        """
         now, most = self._clock(), max(BURST * rate, 1.0)
         if (bucket := self._buckets.get(key)) is None:
             bucket = self._buckets[key] = TokenBucket(most, now)

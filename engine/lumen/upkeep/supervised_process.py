@@ -82,7 +82,10 @@ class SupervisedProcess:
         return self._start(now) if now >= self._next else ""
 
     def lines(self) -> list[str]:
-        """Return the lines that the program has printed since the last call, and a line about those left out."""
+        """Return the lines that the program has printed since the last call, and a line about those left out.
+
+        Empty lines are skipped, and each line is cut to 500 characters.
+        """
         with self._lock:
             found, left_out, self._left_out = list(self._lines), self._left_out, 0
             self._lines.clear()
