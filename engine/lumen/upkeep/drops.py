@@ -88,8 +88,8 @@ class DropLog(Drops):
 class ReasonLog:
     """Logs reasons as warnings, each at most once in ten seconds; repetitions are counted in `drops`.
 
-    Reasons that differ only in numbers are the same. New reasons beyond MAX_KEYS are counted too, and not logged. `line`
-    is the text, with the placeholders `%(key)s` and `%(reason)s`.
+    Reasons that differ only in numbers are the same. New reasons beyond MAX_KEYS are only counted. `line` is the text,
+    with the placeholders `%(key)s` and `%(reason)s`.
     """
 
     def __init__(
