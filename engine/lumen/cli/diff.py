@@ -37,7 +37,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Print the differences; return 1 if the reload would be refused in the running or some other configuration."""
+    """Print the differences; return 1 if a reload would be refused, now or in an explored configuration, else 0."""
     old, new = version(options.old), version(options.new)
     found = changes(old.project, new.project)
     visits = _visits(new) if options.visits else None

@@ -26,9 +26,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Print the page of a code, or the list of the codes that begin with the word; without a word list all.
+    """Print the page of a code, or list the codes that the word selects; without a word, list all. Return 0.
 
-    Return 0.
+    A word selects a family, or the codes that begin with it. Raises UsageError if it selects none.
     """
     word = (options.code or "").strip("[]`")
     json_wanted = options.format == "json"

@@ -24,7 +24,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Ask for confirmation and send the request; return 0, or 1 if it was refused or not confirmed."""
+    """Ask for confirmation and send the request; return 0, or 1 if it was refused or not confirmed.
+
+    Raises UsageError if confirmation is needed, but can't be asked for.
+    """
     if options.format == "json" and not options.yes:
         raise UsageError("--format json can't ask for confirmation: add --yes")
     reached = reach(options)

@@ -52,7 +52,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Print the rows; return 0 if a row matches the sentence in one of the states, else 1. Raises UsageError."""
+    """Print the rows; return 0 if a row matches the sentence in one of the states, else 1.
+
+    Raises UsageError for a behaviour, state or language that does not exist, or without any `hears`.
+    """
     project = lumen.load(shown_project(options.project))
     machine = _machine(project, options.behavior)
     language = options.language or project.languages[0]

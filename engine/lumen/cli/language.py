@@ -48,7 +48,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Run `list`, `add` or `check`; return 0, or 1 if `check` finds missing texts.
 
-    Raises ProjectError if the project's files have errors.
+    Raises ProjectError if the project's files have errors, and UsageError for a language that can't be used.
     """
     root = own_project(options.project)
     files = read_files(root)

@@ -20,7 +20,7 @@ def configure_model(parser: argparse.ArgumentParser) -> None:
 def use_model(name: str, roots: Iterable[Path]) -> None:
     """Make this process, and those that it starts, use the body of that name; an empty name changes nothing.
 
-    Raises UsageError if neither Lumen nor one of the projects in `roots` has such a body.
+    Raises UsageError if one of the projects in `roots` has no such body, and none comes with Lumen.
     """
     if not name:
         return

@@ -37,6 +37,9 @@ def names_meant(options: argparse.Namespace) -> list[str]:
 
 
 def reach(options: argparse.Namespace) -> Reached:
-    """Return the bus of the chosen exhibition. Raises BusError, with a hint, if no exhibition is running."""
+    """Return the bus of the chosen exhibition. Raises BusError, with a hint, if no exhibition is running.
+
+    If it is the shipped exhibition, or the copy of it, that is printed on standard error.
+    """
     shown_project(options.project)
     return reach_exhibition(options.project, options.bus, getattr(options, "robot_name", ""))

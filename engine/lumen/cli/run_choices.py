@@ -14,7 +14,7 @@ from lumen.run.setup import Setup, robot_options, set_up
 
 
 def chosen_story(project: Project, name: str | None) -> Story | None:
-    """Return the story that a name or pattern matches; None if it is None.
+    """Return the story that a name or pattern matches; None if `name` is None.
 
     Raises UsageError if no story or several stories match.
     """

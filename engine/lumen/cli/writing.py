@@ -7,7 +7,7 @@ from lumen.upkeep.replacing import replace_file
 
 
 def write_result(text: str, output: Path | None, *, folders: bool = False) -> None:
-    """Write the text to `output`, or print it if that is None; `folders` creates missing folders.
+    """Write the text to `output` and print that path, or print the text if it is None.
 
     Raises UsageError if the file can't be written.
     """
