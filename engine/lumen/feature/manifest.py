@@ -250,7 +250,7 @@ class Subcommand(NamedTuple):
     `configure` adds arguments to an `ArgumentParser`; `run` returns the exit code.
     """
     after: str = ""
-    """The subcommand after which `lumen --help` lists it, of this or an earlier feature."""
+    """The subcommand of this or an earlier feature after which `lumen --help` lists it; empty to list it last."""
 
 
 class EditorRow(NamedTuple):
@@ -347,7 +347,7 @@ class PartRow(NamedTuple):
     has that section), `file:NAME` (the project has that file next to lumen.yaml).
     """
     after: str = ""
-    """The part of the same phase after which it comes."""
+    """The part of the same phase after which it comes; empty for the order by name."""
     claimed: bool = False
     """True if the part is made only after the process has claimed the robot on the bus.
 
@@ -371,7 +371,7 @@ class Feature(NamedTuple):
     rules: tuple[str, ...] = ()
     """Functions that report faults of a `ProjectDraft`. Their modules declare the codes of these reports."""
     last_rules: tuple[str, ...] = ()
-    """Such functions that run after all others, because they report unused names."""
+    """Rules that run after all others, because they report unused names."""
     codes: tuple[str, ...] = ()
     """Other modules that declare codes, such as those that read files."""
     pages: tuple[str, ...] = ()
@@ -416,8 +416,8 @@ class Feature(NamedTuple):
     new_files: Mapping[str, str] = {}
     """By the kind in `lumen new KIND NAME`, the function that adds the files to a project.
 
-    It gets the project's folder and the name, and returns the paths of the files, the one to read first in front. It
-    raises UsageError if the files can't be made, for example because the name exists.
+    It gets the project's folder and the name, and returns the paths of the files, beginning with the one to read first.
+    It raises UsageError if the files can't be made, for example because the name exists.
     """
     modules: Mapping[str, ModuleRow] = {}
     robots: Mapping[str, RobotRow] = {}
@@ -448,6 +448,6 @@ class Feature(NamedTuple):
     forgets: tuple[str, ...] = ()
     """Functions and classes that delete a person's data for `lumen memory forget NAME` while an exhibition runs.
 
-    A function gets a `PersonName` (`lumen.language.people`). Of a class, the method `forget` of the part or service of
-    that class gets it, if the process has one.
+    A function gets a `PersonName` (`lumen.language.people`). For a class, the method `forget` of the process's part or
+    service of that class gets it, if there is one.
     """
