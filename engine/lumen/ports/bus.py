@@ -83,9 +83,9 @@ class Bus(Protocol):
 
     @abstractmethod
     def subscribe(self, pattern: str, handler: MessageHandler) -> Callable[[], None]:
-        """Call `handler` with each matching message, one by one, in order; the result ends the subscription.
+        """Call `handler` with each matching message, one by one, in order; call the result to end this.
 
-        An exception in a handler is logged and ends neither the bus nor the publisher.
+        An exception in a handler is logged, and affects neither the bus nor the publisher.
         """
         ...
 

@@ -13,7 +13,7 @@ from lumen.language.routes import Size
 
 
 class Sense(StrEnum):
-    """The five kinds of data that Lumen Server acquires in parallel."""
+    """The senses that Lumen itself knows, as Lumen Server did in 2015; features add others."""
 
     IMAGE = "image"
     JOINT = "joint"
@@ -23,7 +23,7 @@ class Sense(StrEnum):
 
 
 class PixelSource(Protocol):
-    """A function that renders or fetches a frame: Shape (height, width, 3), uint8 RGB.
+    """A function that renders or fetches a frame, of shape (height, width, 3), uint8 RGB.
 
     `size` is the size wanted now [px], None for the camera's own. A frame that was already taken in another size may be
     returned as it is; the next frames have the wanted size.

@@ -45,14 +45,14 @@ class SkillCall(Protocol):
         ...
 
     def wait(self, seconds: float) -> bool:
-        """Wait that long by the robot's clock [s]; return False, at once, if the call is or gets cancelled."""
+        """Wait that long by the robot's clock [s]; return True, or False at once if the call is or gets cancelled."""
         ...
 
     def wait_for(self, ready: Callable[[], bool], seconds: float = inf, within: float = inf) -> bool:
-        """Wait until the call is cancelled or `ready` returns True; return whether it did.
+        """Wait until `ready` returns True or the call is cancelled; return the last result of `ready`.
 
         The wait ends after `seconds` [s] of the robot's clock, or `within` [s] of real time. `ready` is called at the
-        start of the wait, and after each call of `wake`.
+        start and the end of the wait, and after each call of `wake`.
         """
         ...
 

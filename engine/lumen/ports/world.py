@@ -72,7 +72,7 @@ class Clock(Protocol):
         ...
 
     def wait(self, until: float) -> None:
-        """Return when `now()` has reached `until`; a simulated clock simulates the time in between."""
+        """Return when `now()` has reached `until` [s]; a simulated clock simulates the time in between."""
         ...
 
 
@@ -81,7 +81,7 @@ class Dozes(Protocol):
     """A clock that can sleep in real time and be woken."""
 
     def doze(self, until: float) -> float:
-        """Sleep until `now()` would be `until` [s], or until `hurry`; return the time [s]."""
+        """Sleep until `now()` would be `until` [s], or until `hurry` is called; return the time [s]."""
         ...
 
     def hurry(self) -> None:
