@@ -134,7 +134,7 @@ def shown(value: object) -> str:
 
 
 def fault_of_package(error: BaseException) -> str:
-    """Return a sentence about an error that code of an installed package with features raised; else empty.
+    """Return a sentence about an error that code of an installed package with features raised; empty for other errors.
 
     The innermost call of Lumen's code or of such a package decides; calls of other modules are skipped.
     """
@@ -164,7 +164,7 @@ def _raiser(error: BaseException) -> tuple[Distribution, str, int] | None:
 
 
 def fault_of_subscriber(error: BaseException, pattern: str) -> str:
-    """Return a sentence about a subscriber's error if it called code of an installed package with features; else empty.
+    """Return a sentence about a subscriber's error if it called an installed package with features; empty otherwise.
 
     The outermost call of such a package's code decides. `pattern` is the pattern of keys that it subscribed to.
     """

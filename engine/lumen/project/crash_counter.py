@@ -13,7 +13,8 @@ MAX_KNOWN_BUNDLES = 20
 class CrashCounter:
     """Counts for each bundle, in a file of the home, how often it crashed before its probation was over.
 
-    The count is written before the bundle becomes active, because a crashing process can no longer write.
+    The count is written before the bundle becomes active, because a crashing process can no longer write. If the file
+    can't be read, all counts are 0; if it can't be written, they stay as they were.
     """
 
     def __init__(self, home: Home) -> None:

@@ -88,7 +88,7 @@ class Expressions:
         return None if meant is None else Template(meant, where, text if meant != text else "")
 
     def value(self, data: Any, where: NodePath) -> ComputedValue:
-        """Return data with each text read as an expression, also in lists and maps; unreadable ones become None.
+        """Return data with each text read as an expression, even in lists and maps; unreadable ones become None.
 
         A number that is not finite is reported and becomes None: values go into messages and snapshots, and JSON has no
         infinity or NaN.

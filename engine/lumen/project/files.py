@@ -138,7 +138,7 @@ def _within(folder: str) -> Iterator[str]:
 
 
 def _names(folder: Path, endings: tuple[str, ...]) -> list[str]:
-    """Return the names of the files of a folder, sorted, without dotfiles; none if it is missing. Raises OSError."""
+    """Return the file names in a folder, sorted, without dotfiles; none if it is missing. Raises other OSErrors."""
     try:
         listed = os.listdir(folder)
     except FileNotFoundError:

@@ -32,7 +32,7 @@ class Home:
         self._lock: int | None = None
 
     def hold(self) -> bool:
-        """Create the folder and lock it; return False if another process holds the lock.
+        """Create the folder and lock it; return True, or False if another process holds the lock.
 
         Raises UsageError if the folder can't be made.
         """

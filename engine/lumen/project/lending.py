@@ -53,7 +53,7 @@ def model_files(project: Project) -> tuple[Path, str]:
 
 @cache
 def shipped_message(name: str) -> Any:
-    """Return the schema of a message that comes with Lumen; None if no schema has that name."""
+    """Return the schema of a message that comes with Lumen, shared by all callers; None if no schema has that name."""
     file = shipped().get(f"{MESSAGES}/{name}{SCHEMA_SUFFIX}")
     return json.loads(file.read_bytes()) if file else None
 

@@ -1,4 +1,4 @@
-"""Check for numbers that are no use in a calculation: YAML's `.nan` and `.inf`, and numbers that are too extreme."""
+"""Check for numbers that can't be used in calculations: YAML's `.nan` and `.inf`, and numbers that are too extreme."""
 
 from collections.abc import Callable, Iterator, Mapping
 from math import isfinite, isinf, isnan

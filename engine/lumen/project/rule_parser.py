@@ -60,7 +60,7 @@ class RuleSyntaxError(Exception):
 
 
 def parse_rule(text: str) -> RuleText:
-    """Return the parsed rule. Raises RuleSyntaxError."""
+    """Return the parsed rule. Raises RuleSyntaxError if the text is not a rule."""
     return _Parser(text).rule()
 
 

@@ -123,7 +123,7 @@ def _files() -> list[Path]:
 def _copied() -> Path:
     """Return the copy, made as a whole or not at all if it is missing: another run may make it at the same time.
 
-    Permissions are not copied, so that a copy of a read-only installation can be written.
+    Permissions are not copied, so that a copy of a read-only installation can be written. Raises UsageError on failure.
     """
     import shutil  # late, as tempfile is: lint of a project does without
     import tempfile

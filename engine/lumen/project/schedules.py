@@ -37,7 +37,7 @@ class MisreadTimeError(Exception):
 
 
 def read_schedule(text: str) -> Schedule:
-    """Return the schedule that a text describes. Raises MisreadTimeError."""
+    """Return the schedule that a text describes. Raises MisreadTimeError if the text can't be read."""
     times: set[int] = set()
     weekdays: set[int] = set()
     dates: set[date] = set()
@@ -85,7 +85,7 @@ def _words(text: str) -> Iterator[str]:
 
 
 def _time(word: str) -> int:
-    """Return the minutes since midnight."""
+    """Return the minutes since midnight. Raises MisreadTimeError for another text than `HH:MM`."""
     if not (match := _TIME.fullmatch(word)):
         raise MisreadTimeError(f"`{word}` is not a time of day", _other_time(word))
     hour, minute = int(match[1]), int(match[2])

@@ -175,7 +175,7 @@ def _yaml(key: str) -> str:
 
 
 def _flow(value: Any) -> str:
-    """Return a value in one line of YAML, in flow style."""
+    """Return a value on one line of YAML, in flow style."""
     match value:
         case dict():
             return "{" + ", ".join(f"{k}: {_flow(v)}" for k, v in value.items()) + "}"
@@ -185,7 +185,7 @@ def _flow(value: Any) -> str:
 
 
 def _instead(value: Any, wanted: Iterable[str], schema: Mapping[str, Any]) -> str:
-    """Return a hint for a value of the wrong type that is nearly right, such as a number in quotes; else empty."""
+    """Return a hint for a value of the wrong type that is nearly right, such as a number in quotes; empty otherwise."""
     if "boolean" in wanted and (truth := _truth(value)):
         return f"write `{truth}`: in YAML 1.2 `{value}` is a text"
     if {"number", "integer"} & set(wanted) and isinstance(value, str):

@@ -67,7 +67,8 @@ class Settings:
 def build_settings(data: Any, report: DocumentReport, robot: str = "") -> Settings:
     """Return the settings in the data of lumen.yaml, which has the shape of lumen.schema.json but may lack any key.
 
-    They are the settings of this `robot`, or of the first one if the name is empty or unknown; the latter is reported.
+    They are the settings of this `robot`, or of the first one if the name is empty. An unknown name is reported,
+    and the first robot is used.
     """
     if not isinstance(data, Mapping):
         return Settings()

@@ -1,4 +1,4 @@
-"""Find typing mistakes, and signs that word processors change, in one line; each with the corrected line.
+"""Find typing mistakes, and characters that word processors change, in one line; each with the corrected line.
 
 The public functions get the text of a line and its index in the file, from 0.
 """

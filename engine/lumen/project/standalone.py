@@ -97,7 +97,7 @@ class _Family:
         self.functions = self.join(functions)
 
     def head(self, name: str) -> MachineDefinition:
-        """Return the machine of that name, linked to those that it invokes. Raises ProjectError."""
+        """Return the machine of that name, linked to those that it invokes. Raises ProjectError for faults."""
         waiting = [name]
         while waiting:
             each = waiting.pop()

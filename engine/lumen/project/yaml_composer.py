@@ -133,7 +133,10 @@ class _Composer:
         return node
 
     def _named_before(self, event: Any) -> yaml.Node:
-        """Return the node that an alias refers to."""
+        """Return the node that an alias refers to.
+
+        Raises UnknownAliasError, or TooLargeError if the alias is within that node or there are too many nodes.
+        """
         if event.anchor not in self._anchors:
             raise UnknownAliasError(event.anchor, tuple(self._anchors), event.start_mark)
         if event.anchor not in self._sizes:

@@ -11,7 +11,7 @@ from lumen.project.yaml_scalars import resolve
 
 SCHEMA_COMMENT = "# yaml-language-server: $schema=../schemas/{kind}.schema.json\n"
 MAX_FLOW_WIDTH = 90
-"""The maximum number of characters of a map or a list that is written in one line."""
+"""The maximum number of characters of a map or a list that is written on one line."""
 
 _HARD, _SPECIAL = frozenset('"\\\n\t'), frozenset("'!&*#:,[]{}%@`|>")
 _TABLES = frozenset(
@@ -33,7 +33,7 @@ class _Dumper(yaml.SafeDumper):
 
 
 def document_yaml(data: Mapping[str, Any], kind: str = "behavior") -> str:
-    """Return the text of the file: states as blocks, transitions and actions in one line if they fit.
+    """Return the text of the file: states as blocks, transitions and actions on one line if they fit.
 
     Read again, it yields the same data.
     """
@@ -57,7 +57,7 @@ def _part(key: str, value: Any) -> yaml.Node:
 
 
 def _compact(value: Any) -> yaml.Node:
-    """Return the node of a value: in one line if it is short, else with one line for each of its parts."""
+    """Return the node of a value: on one line if it is short, else with one line for each of its parts."""
     flow = not isinstance(value, Mapping | list) or len(json.dumps(value, ensure_ascii=False)) <= MAX_FLOW_WIDTH
     match value:
         case Mapping():

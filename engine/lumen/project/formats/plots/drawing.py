@@ -37,7 +37,8 @@ _STYLE: dict[Any, Any] = {
 def draw(sheet: PlotSheet, ending: str) -> bytes:
     """Return the sheet as the bytes of an image file; `ending` is one of `PLOT_ENDINGS`.
 
-    The same sheet gives the same bytes. Raises MissingExtraError if matplotlib is not installed.
+    The same sheet gives the same bytes. Matplotlib is set to log only errors and to open no windows in this process.
+    Raises MissingExtraError if it is not installed.
     """
     demand("plot", "a plot", "matplotlib")
     logging.getLogger("matplotlib").setLevel(logging.ERROR)

@@ -1,4 +1,4 @@
-"""Plot a motion: for each joint its angle over time, its keys and its limits."""
+"""Plot a motion: the angle of each joint over time, with its keys and limits."""
 
 from math import degrees
 
