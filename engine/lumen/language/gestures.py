@@ -23,7 +23,7 @@ class Gesture:
     tags: tuple[str, ...]
     """The tags of the texts that the gesture accompanies."""
     tracks: Mapping[str, tuple[tuple[float, float], ...]]
-    """For each joint rows (time [s], offset from its current angle [rad; hands 0..1]), from zero back to zero."""
+    """For each joint, its keys (time [s], offset from its current angle [rad; hands 0..1]), from zero back to zero."""
     stroke: float
     """The time of the stroke [s]."""
     duration: float
@@ -32,7 +32,7 @@ class Gesture:
     """True if the gesture may also be performed with the other side, by `mirror`."""
     where: NodePath = field(default=(), compare=False)
     mirror: Mapping[str, tuple[str, float]] = field(default_factory=dict)
-    """For each joint of the gesture the opposite one and the factor of the angle, as in `language/mirrors.py`."""
+    """For each joint of the gesture, the opposite one and the factor of its angle, as in `language/mirrors.py`."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -171,7 +171,7 @@ class State:
     life: str = ""
     """The style of life while the state is active; empty for that of the surrounding state."""
     gestures: Literal["none", ""] = ""
-    """`none` if the robot speaks without gestures in the state; else empty."""
+    """`none` if the robot speaks without gestures in the state; empty otherwise."""
     buttons: tuple[Button, ...] = ()
     """Buttons for the operator, which are also available while a state within is active."""
     for_each: ForEach | None = None

@@ -6,7 +6,7 @@ from lumen.language.robots import Body
 from lumen.language.roles import LEFT, RIGHT, JointRole
 
 Mirror = Mapping[str, tuple[str, float]]
-"""For each joint its counterpart on the other side, empty if the body has none, and the sign of the mirrored angle.
+"""For each joint, its counterpart on the other side (empty if the body has none) and the sign of the mirrored angle.
 
 A joint that is absent stays as it is.
 """

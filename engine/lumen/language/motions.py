@@ -33,7 +33,7 @@ class Keyframe:
     angle: float
     """The angle [rad; a hand 0..1]."""
     interpolation: Interpolation = Interpolation.MINIMUM_JERK
-    """The course from the key before."""
+    """The curve from the previous key to this one."""
     handle_in: tuple[float, float] = (0.0, 0.0)
     """The Bezier handle before the key, with dt < 0."""
     handle_out: tuple[float, float] = (0.0, 0.0)

@@ -98,7 +98,7 @@ class Project:
 
     @property
     def one_of_several(self) -> str:
-        """The robot's name if it must be distinguished from others of the house, even on the disk; else empty."""
+        """The robot's name if it must be distinguished from others of the house, even on the disk; empty otherwise."""
         return self.robot if self.told_apart else ""
 
     @property

@@ -119,7 +119,7 @@ class Route:
     alias: str = ""
     """A second key while one robot is on the bus: messages are sent under both and received under either."""
     of: str = ""
-    """The sense that the route carries besides the sense's own route, with another period, size or form; else empty."""
+    """The sense that the route carries besides the sense's own route, with another period, size or form; or empty."""
     content_type: str = JSON_TYPE
     """The form of a body on a broker."""
     where: NodePath = field(default=(), compare=False)
