@@ -93,7 +93,7 @@ class JudgeProcess:
     def request(self, question: Any, timeout: float = threading.TIMEOUT_MAX) -> Any:
         """Return the answer, or raise it if it is an exception.
 
-        Raises NoAnswerError if the process ends without one, or is killed after `timeout` [s].
+        Raises NoAnswerError if the process was not started, ends without an answer, or is killed after `timeout` [s].
         """
         with self._asking:
             if (child := self._child) is None:

@@ -25,7 +25,7 @@ def private_folder(folder: Path) -> None:
 
 
 def write_private(path: Path, content: bytes, *, durable: bool = False) -> None:
-    """Write a file that only its owner can read, completely or not at all. Raises OSError.
+    """Write a file that only its owner can read, completely or not at all. Raises OSError if that fails.
 
     A crash of the process loses neither the old nor the new file. After a power cut the old one may come back, unless
     `durable` forces the content to the disk.
@@ -75,7 +75,7 @@ class CacheFolder:
         return content
 
     def write(self, name: str, content: bytes) -> None:
-        """Save a content completely or not at all; delete the files beyond the limit that were not used for longest."""
+        """Save content completely or not at all, then delete the least recently used files beyond the limit."""
         draft = self._folder / f".{os.urandom(16).hex()}"
         try:
             self._folder.mkdir(mode=0o700, parents=True, exist_ok=True)

@@ -73,7 +73,7 @@ class SupervisedProcess:
         return self._next
 
     def tick(self) -> str:
-        """Start the program when it is due; return the reason if it has ended or could not be started, else empty."""
+        """Start the program when it is due; return the reason if it has ended or could not start, otherwise empty."""
         now = self._clock()
         if self._closed or self.running:
             return ""

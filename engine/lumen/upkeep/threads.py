@@ -55,7 +55,7 @@ class WatchedThread:
         return self._thread is not None
 
     def start(self) -> None:
-        """Start the thread."""
+        """Start the thread; if the system refuses, `lost` is the reason."""
         with _changing:
             _watched.add(self)
         self._begin()
