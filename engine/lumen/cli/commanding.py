@@ -16,7 +16,7 @@ COMMAND_TIMEOUT = 30.0
 def command(options: argparse.Namespace, body: Any, done: str) -> int:
     """Send a command and wait for the answer; print `done` and return 0, or print the refusal and return 1.
 
-    Raises BusError if no answer arrives within COMMAND_TIMEOUT [s].
+    Raises BusError if no exhibition is running, or no answer arrives within COMMAND_TIMEOUT [s].
     """
     reached = reach(options)
     try:

@@ -30,7 +30,8 @@ from lumen.run.setup import Setup, robot_options, set_up_house
 class HouseRun:
     """The robots of a house, run from one terminal.
 
-    `parts` are the parts of each robot that this process runs; empty means all.
+    `parts` are the parts of each robot that this process runs; empty means all. Making a HouseRun composes their
+    exhibitions. Raises UsageError if several processes have no common bus.
     """
 
     def __init__(self, options: argparse.Namespace, start: BegunRun, parts: tuple[str, ...]) -> None:

@@ -58,7 +58,7 @@ def progress_line(state: ProgressState, now: float, *, at_most: bool = False) ->
 def progress(*, at_most: bool = False, clock: Callable[[], float] = time.monotonic) -> Iterator[ProgressListener]:
     """Show a progress bar on standard error until the block ends; yield the function that receives the progress.
 
-    `at_most` is true if the whole amount is only an upper bound.
+    `at_most` is true if the whole amount is only an upper bound. Nothing is shown if standard error is not a terminal.
     """
     if not sys.stderr.isatty():
         yield lambda done, whole, name: None

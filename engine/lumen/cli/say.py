@@ -22,7 +22,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Send the text; return 0 once the robot has said it, 1 if it refused. Raises UsageError for an empty text."""
+    """Send the text; return 0 once the robot has said it, 1 if it refused.
+
+    Raises UsageError for an empty text, and BusError as `command` does.
+    """
     if not options.text.strip():
         raise UsageError("the text is empty: write it in quotes")
     parameter = {"text": options.text, "language": options.language}

@@ -36,7 +36,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Rewrite the files and list the changes; return 1 if errors are left, else 0.
 
-    With --check write nothing, and return 1 if something must be rewritten. With --diff only print the changes.
+    With --check write nothing, and return 1 if something must be rewritten. With --diff only print the changes, and
+    return 0. Raises UsageError if --diff is combined with --check or `--format json`.
     """
     if options.diff and (options.check or options.format != "text"):
         raise UsageError("--diff can't be combined with --check or --format")
