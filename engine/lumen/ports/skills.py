@@ -65,7 +65,7 @@ class SkillPerformer(Protocol):
     """The code of a feature's verb: an object, or a module, with this function."""
 
     def perform(self, call: SkillCall, /) -> Mapping[str, Any] | None:
-        """Perform the verb; return its result, JSON data that match the schema of the row.
+        """Perform the verb; return its result, JSON data that match the schema of the row, or None for an empty one.
 
         It should return soon after `call.cancelled` becomes true. Raises RobotError on failure. Any other exception
         counts as a failure too, and is logged with its traceback.
