@@ -18,7 +18,7 @@ from lumen.language.verbs import is_built_in
 
 @cache
 def usable_verbs() -> Mapping[str, VerbRow]:
-    """Return the verbs that features add, by name, without faulty rows: these would make the YAML's schema invalid."""
+    """Return the verbs that features add, by name, without faulty rows, which would make a schema invalid."""
     return {name: row for name, row in added_verbs().items() if not _fault(name, row)}
 
 

@@ -1,4 +1,4 @@
-"""Build a `Machine` from the plain data of a behaviour file, `behaviors/NAME.yaml`."""
+"""Build a `MachineDefinition` from the plain data of a behaviour file, `behaviors/NAME.yaml`."""
 
 import hashlib
 import json
@@ -202,7 +202,7 @@ class _Builder:
         return _children(entry)[:1]
 
     def remembered(self, entry: OutlinedState) -> tuple[str, ...]:
-        """Return the paths that a history state enters without a history: its target, else its parent's default."""
+        """Return the paths that a history state without a memory enters: its target, else its parent's default."""
         parent = entry.parent
         assert parent is not None  # the schema does not allow the root to be a history state
         if "target" in entry.data:
@@ -236,7 +236,7 @@ class _Builder:
         return found.path if found else ""
 
     def renamed(self, was: str) -> str:
-        """Return the present name of an entry under `renamed`, following later renames; report it if it has none."""
+        """Return the present name of an entry under `renamed`, after all renames; if none, report it and return ""."""
         table: Mapping[str, str] = self.data["renamed"]
         seen, now = {was}, table[was]
         while not (found := self.known(now)) and now in table and now not in seen:

@@ -39,7 +39,7 @@ GAIT_LENGTHS = frozenset(
         "sole_aside",
     )
 )
-"""The parameters of a pace that are lengths in the file's unit. Those in neither set are times [s]."""
+"""The parameters of a pace that are lengths in the file's unit. Those neither here nor in GAIT_ANGLES are times [s]."""
 
 NO_MJCF = "none"
 """The value of `mjcf` for a body that is never simulated."""

@@ -152,7 +152,7 @@ def package_at_fault(error: BaseException) -> Distribution | None:
 
 
 def _raiser(error: BaseException) -> tuple[Distribution, str, int] | None:
-    """Return the distribution, the module and the line that raised an error; None if that is Lumen's own code."""
+    """Return the distribution, the module and the line that raised an error; None if no package with features did."""
     packages = _packages()
     for module, line in reversed(_calls(error)):
         package = module.partition(".")[0]

@@ -90,7 +90,7 @@ T = TypeVar("T")
 def draft(files: Mapping[str, bytes]) -> ProjectDraft:
     """Return all that can be built from these files, with the findings.
 
-    The result depends on nothing else. No content of a file raises an error.
+    The result depends only on them and on the installed software. No content of a file raises an error.
     """
     files = with_common_words(files)
     found = ProjectDraft(files)

@@ -1,6 +1,6 @@
 """Choose one robot of several for one exhibition.
 
-The choice is one of the project's files, under a name that no real file has: so the result still depends on the files
+The choice is one of the project's files, under a name that no real file has, so the result still depends on the files
 alone. It is left out of their hash, because all robots of a house have the same files.
 """
 

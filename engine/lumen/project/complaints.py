@@ -18,7 +18,7 @@ WRONG_VALUE = Code("wrong-value", "shape", ERROR, "a value is not one of those a
 
 
 MAX_UNKNOWN_KEYS = 50
-"""The number of unknown keys of a node for which a suggestion is searched; the rest are reported without a hint."""
+"""The number of unknown keys of a node for which a suggestion is sought; the rest are reported without a hint."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,15 +37,15 @@ class Complaint:
     key: bool = False
     """True if the finding is shown at the key of the node instead of its value."""
     missing: str = ""
-    """The key that is absent."""
+    """The key that is absent; empty for other findings."""
     suggestion: str = ""
-    """The key that was probably meant by an unknown one."""
+    """The key that was probably meant by an unknown one; empty if none is similar."""
 
 
 def complaints(error: Error, root: Any = None) -> Iterator[Complaint]:
     """Yield the few findings that describe one error of the validator; of alternatives, only the likeliest.
 
-    `root` is the whole schema, from which the hint about a misplaced key gets the right place.
+    `root` is the whole schema, in which the hint about a misplaced key finds the right place.
     """
     keyword, path = error.validator, tuple(error.absolute_path)
     if meant := _misspelt_entry(error, path, root):

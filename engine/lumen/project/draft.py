@@ -59,7 +59,7 @@ class ProjectDraft:
     names: dict[str, frozenset[str]] = field(default_factory=dict)
     """For each folder, the names of all files in it, including those that could not be built."""
     reports: dict[str, DocumentReport] = field(default_factory=dict)
-    """The reports by the file of the document."""
+    """The report of each document, by the path of its file."""
     loose: list[Diagnostic] = field(default_factory=list)
     """Findings that belong to no document."""
     missing: set[str] = field(default_factory=set)

@@ -128,7 +128,7 @@ class Expressions:
         return not found and self._calls_what_it_may(source, where) and self._draws_where_it_may(source, where)
 
     def _expanded(self, expand: Expand, meant: str, written: str, where: NodePath) -> str | None:
-        """Return the source or text with the project's functions put in; None if that can't be done."""
+        """Return the source or text with the project's functions expanded; None if that can't be done."""
         if not self.functions:
             return meant
         self.used |= {name for name in self.functions if name in meant}

@@ -30,7 +30,7 @@ MAX_PROJECT_BYTES = 32_000_000
 """The maximum size of all files together [bytes]."""
 
 MAX_FOLDER_FILES = 5_000
-"""The maximum number of files in a folder; of more, the first in alphabetical order are read."""
+"""The maximum number of files in a folder; if there are more, the first in alphabetical order are read."""
 
 LEADS_OUT = b"it is a link that leads out of the project"
 

@@ -21,7 +21,7 @@ class _Kept(NamedTuple):
 
 
 class KeptContents:
-    """A cache of contents by path, for callers that read the same files each second.
+    """A cache of contents by path, for callers that read the same files every second.
 
     A file counts as unchanged if its device, inode, size and times are the same. Only contents of regular files that
     had been unchanged for `SETTLED_NS` are kept.

@@ -19,7 +19,7 @@ from lumen.project.settings import Settings
 def lend(files: Mapping[str, bytes], settings: Settings, models: Collection[str]) -> dict[str, bytes]:
     """Return the shipped files, by their path, that this project needs and does not have.
 
-    `models` are the names of the bodies that are needed, and of the MJCF of its own bodies.
+    `models` are the names of the bodies that are needed, and of the MJCF files of the project's own.
     """
     schemas = [f"{MESSAGES}/{route.schema}{SCHEMA_SUFFIX}" for route in settings.routes.values() if route.schema]
     wanted = [*schemas, *(f"{MODELS}/{name}" for name in (settings.hall, *models) if name)]

@@ -171,7 +171,7 @@ class _LifeReader:
         return self._time((key, "every"), data["every"])
 
     def _time(self, path: NodePath, text: str) -> float:
-        """Return the time between two repetitions [s]; one below the minimum is reported and raised to it."""
+        """Return a duration [s]; one below SHORTEST_PERIOD is reported and raised to it."""
         time = seconds(text) or 0.0
         if time < SHORTEST_PERIOD:
             hint = f"write at least {1000 * SHORTEST_PERIOD:g}ms"

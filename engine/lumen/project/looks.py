@@ -26,7 +26,7 @@ class Looks:
         """The resolved paths of folders that were looked into."""
 
     def at(self, path: Path) -> str:
-        """Record that the result depends on this path: on the file there, on the list of a folder, or on its absence.
+        """Record that the result depends on this path: on the file there, the entries of a folder, or its absence.
 
         Return the resolved path, empty for a name that no file can have.
         """

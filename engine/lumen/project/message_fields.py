@@ -27,7 +27,7 @@ class SchemaField(NamedTuple):
 
 
 def message_fields(schema: Mapping[str, Any] | None) -> Mapping[str, SchemaField]:
-    """Return the fields by name, in the order of the schema; none if it is None or declares no properties."""
+    """Return the fields by name, in the order of the schema; none if the schema is None or has no properties."""
     rows = (schema or {}).get("properties")
     return {name: _field(name, row) for name, row in rows.items()} if isinstance(rows, Mapping) else {}
 

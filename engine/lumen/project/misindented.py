@@ -33,7 +33,7 @@ _CODES = frozenset((MISSING_KEY, ONE_VERB, UNKNOWN_KEY, WRONG_KEY, WRONG_TYPE))
 _BEGINNING = re.compile(r"( *)(- +)?(?:([^\s\"'#\[\]{},:][^\s:]*):(?= |$))?")
 
 CheckedAgain = Callable[[str], list[Complaint] | None]
-"""Returns all complaints about the text of a file; None if it is not YAML."""
+"""A function that returns all complaints about the text of a file; None if it is not YAML."""
 
 
 _What = tuple[str, str, str]

@@ -72,7 +72,7 @@ def _holds(span: NodeSpan, lines: list[str], first: int, last: int) -> bool:
 
 
 def _fragment(before: Document, lines: list[str], path: NodePath) -> str:
-    """Return the text with only the block at a path, in keys that are indented as those around it."""
+    """Return the text with only the block at a path, under keys that are indented like those around it."""
     key, value = before.spans[path]
     assert key
     kept = [""] * len(lines)

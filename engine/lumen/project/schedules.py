@@ -85,7 +85,7 @@ def _words(text: str) -> Iterator[str]:
 
 
 def _time(word: str) -> int:
-    """Return the minutes since midnight. Raises MisreadTimeError for another text than `HH:MM`."""
+    """Return the minutes since midnight. Raises MisreadTimeError for any text but `HH:MM`."""
     if not (match := _TIME.fullmatch(word)):
         raise MisreadTimeError(f"`{word}` is not a time of day", _other_time(word))
     hour, minute = int(match[1]), int(match[2])

@@ -27,7 +27,7 @@ from lumen.project.yaml_nodes import read_text
 
 MAX_PRUNING_ROUNDS = 20
 MAX_SCHEMAS = 64
-"""The number of schemas that are cached: one for each kind of file and version of a project's own verbs."""
+"""The maximum number of cached schemas: one for each kind of file and version of a project's own verbs."""
 
 _ASTRAY = (UNKNOWN_KEY, ONE_VERB)
 """The codes of complaints about keys that belong below the key above them."""

@@ -37,7 +37,7 @@ class Settings:
     vocabulary: int = FIRST_VOCABULARY
     name: str = ""
     robot: str = DEFAULT_ROBOT
-    """The robot of this exhibition, one of `robots`; the settings of one robot are this one's."""
+    """The robot of this exhibition, one of `robots`; fields about one robot, such as `model`, are about it."""
     robots: Mapping[str, RobotSpec] = field(default_factory=dict)
     told_apart: bool = False
     """True if lumen.yaml has `robots:`, so that robots are distinguished by name."""

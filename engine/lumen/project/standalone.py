@@ -34,8 +34,8 @@ ReadDocument = Callable[[str], tuple[Document | None, list[Diagnostic]]]
 def machine_from_file(path: Path) -> MachineDefinition:
     """Return the machine in a file; behaviours that it invokes are in the same folder.
 
-    The functions that it calls are in a folder `functions` next to that folder. Raises UsageError if a file can't be
-    read, ProjectError for faults of the files.
+    Words files are in `words` below that folder, and functions in `functions` beside it. Raises UsageError if a file
+    can't be read, ProjectError for faults of the files.
     """
     beside, words = _yaml_files(path.parent), _yaml_files(path.parent / "words")
     name, functions = composed(path.stem), _yaml_files(path.absolute().parent.parent / FUNCTIONS_FOLDER)

@@ -22,7 +22,7 @@ def controller_sheet(controller: ControllerDefinition) -> PlotSheet:
     """Return a sheet with the membership functions of each variable, then each output over the inputs it depends on.
 
     An output of one input is a curve, one of two inputs a surface. With more inputs there is one curve for each, while
-    the others rest.
+    the others have their resting values.
     """
     survey = Survey(controller, CURVE_RESOLUTION)
     panels = [memberships(variable) for variable in variables(controller)]

@@ -12,7 +12,7 @@ MAX_RULE_LENGTH = 60
 def explained_sheet(controller: ControllerDefinition, said: Explanation) -> PlotSheet:
     """Return a sheet with the inputs marked in their memberships, the rules, and each output's set with its value.
 
-    The title of an output for which no rule fires is marked.
+    The title of an output says if no rule fires for it.
     """
     panels = [
         memberships(variable, (PlotMark(said.inputs[name], f"{said.inputs[name]:g}", strong=True),))
