@@ -20,7 +20,7 @@ class Expression:
     where: NodePath = field(default=(), compare=False)
     """The path of the text in the document."""
     written: str = field(default="", compare=False)
-    """The author's text if it differs from `source`, because names or functions in it were replaced; or empty."""
+    """The author's text if it differs from `source`, because names or functions in it were replaced; else ""."""
 
     @property
     def shown(self) -> str:
@@ -36,7 +36,7 @@ class Template:
     where: NodePath = field(default=(), compare=False)
     """Its path in the document."""
     written: str = field(default="", compare=False)
-    """The author's text if it differs from `text`; or empty."""
+    """The author's text if it differs from `text`; else ""."""
 
     @property
     def shown(self) -> str:

@@ -214,7 +214,7 @@ class OutputBinding:
 
 @dataclass(frozen=True, slots=True)
 class ContextInput:
-    """An input that is a number of the behaviour's context."""
+    """An input whose value is a number in the behaviour's context."""
 
     variable: str
     key: str

@@ -9,7 +9,7 @@ from lumen.language.diagnostics import NodePath
 
 @dataclass(frozen=True, slots=True)
 class FunctionExample:
-    """A call that `lumen test` checks: JSON values by argument, and the value that the function must give."""
+    """A call that `lumen test` checks: JSON values by argument, and the value that the function must return."""
 
     arguments: Mapping[str, Any]
     value: Any

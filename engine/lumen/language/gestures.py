@@ -29,7 +29,7 @@ class Gesture:
     duration: float
     """The time at which the joints have returned [s]."""
     mirrored: bool = False
-    """True if the gesture may also be performed with the other side, by `mirror`."""
+    """True if the gesture may also be performed on the other side, by `mirror`."""
     where: NodePath = field(default=(), compare=False)
     mirror: Mapping[str, tuple[str, float]] = field(default_factory=dict)
     """For each joint of the gesture, the opposite one and the factor of its angle, as in `language/mirrors.py`."""

@@ -16,7 +16,7 @@ class Schedule:
     weekdays: tuple[int, ...] = ()
     """Days of the week, 0 being Monday."""
     dates: tuple[date, ...] = ()
-    """Days of the calendar; if there are no `weekdays` either, every day."""
+    """Days of the calendar. Without `weekdays` and `dates`, the schedule applies to every day."""
     text: str = field(default="", compare=False)
     """The schedule as the author wrote it."""
 

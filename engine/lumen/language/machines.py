@@ -112,7 +112,7 @@ class Transition:
 
 @dataclass(frozen=True, slots=True)
 class Invoke:
-    """Another behaviour that runs while the state is active; `input` gives keys of its context first values."""
+    """Another behaviour that runs while the state is active; `input` sets initial values in its context."""
 
     id: str
     behavior: str

@@ -15,7 +15,7 @@ VISITOR_KEY = "visitor"
 
 @dataclass(frozen=True, slots=True)
 class ModuleSettings:
-    """The settings of a module in lumen.yaml; with a `command` it is a program of the project's own."""
+    """The settings of a module in lumen.yaml; one with a `command` is a program of the project's own."""
 
     here: bool = False
     """True if `lumen run` runs the module in its own process, or starts the module's program."""

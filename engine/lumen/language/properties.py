@@ -17,7 +17,7 @@ class Property:
     eventually: Expression | None = None
     """The condition that must hold at some time before the deadline; None for `always`."""
     whenever: Expression | None = None
-    """The condition that starts the time whenever it becomes true; None to count from the beginning of the run."""
+    """The condition that starts the wait whenever it becomes true; None to wait from the beginning of the run."""
     within: float = 0.0
     """The time until the deadline [s]."""
     where: NodePath = field(default=(), compare=False)

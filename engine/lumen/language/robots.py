@@ -84,7 +84,7 @@ class Body:
     """The camera; a body whose eyes have a camera must have one. None without a camera."""
     tactile: tuple[str, ...]
     shared: Mapping[str, str] = field(default_factory=dict)
-    """For a joint, the one whose motor also moves it."""
+    """For each joint without a motor of its own, the joint whose motor also moves it."""
     hands: tuple[str, ...] = ()
     """The joints with an opening (0..1) instead of an angle."""
     slides: tuple[str, ...] = ()
@@ -93,7 +93,7 @@ class Body:
     passages: tuple[MotionDefinition, ...] = ()
     """Motions between two postures (`start` and `end`), for robots that would fall on the direct way."""
     links: Mapping[str, LinkInertia] = field(default_factory=dict)
-    """The links that differ from the MJCF."""
+    """The inertia of links that differ from the MJCF, by name."""
     roles: Roles = field(default_factory=Roles)
     """The parts of the body by function."""
     gait: Mapping[str, Mapping[str, float]] = field(default_factory=dict)

@@ -50,7 +50,7 @@ class JointRole:
 
 @dataclass(frozen=True, slots=True)
 class Base:
-    """The base of a body."""
+    """The base of a body, which carries it and may move it about."""
 
     kind: str = FIXED
     """The name of a feature's row in the table `bases`."""
@@ -131,7 +131,7 @@ class Roles:
         return next((path for path, role in self.paths.items() if role.joint == joint), "")
 
     def head_joints(self, yaw: float, pitch: float) -> dict[str, float]:
-        """Return the angle [rad] of each joint that turns the head, for this yaw and pitch; only of joints it has."""
+        """Return the angle [rad] of each joint that turns the head and that the body has, for this yaw and pitch."""
         wanted = ((self.joint(HEAD_YAW), yaw), (self.joint(HEAD_PITCH), pitch))
         return {role.joint: role.sign * angle for role, angle in wanted if role}
 

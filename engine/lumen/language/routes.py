@@ -115,11 +115,11 @@ class Route:
     latency: float = 0.15
     """The assumed age of a body without a `time` [s]."""
     most: float | None = None
-    """The maximum rate of accepted messages [1/s]; None for the default, which `rate` includes."""
+    """The maximum rate of accepted messages [1/s]; None for the default, see `rate`."""
     alias: str = ""
     """A second key while one robot is on the bus: messages are sent under both and received under either."""
     of: str = ""
-    """The sense that the route carries besides the sense's own route, with another period, size or form; or empty."""
+    """The sense that the route carries besides the sense's own route, with another period, size or form; else ""."""
     content_type: str = JSON_TYPE
     """The form of a body on a broker."""
     where: NodePath = field(default=(), compare=False)

@@ -38,7 +38,7 @@ INTERNAL_ALIASES: Mapping[str, str] = {
     CONFIG_STATUS: "lumen.config.status",
     OPERATOR_REQUEST: "lumen.operator.request",
 }
-"""The keys of these messages if there is only one robot."""
+"""The keys without a robot's name, which these messages have too while there is only one robot."""
 INTERNAL_KEYS = (*INTERNAL_ALIASES.values(), *INTERNAL_ALIASES, OPERATOR_ANSWER, TOLD, SHARED_KEY)
 
 

@@ -71,7 +71,7 @@ class Approve:
 
 @dataclass(frozen=True, slots=True)
 class SetAutonomy:
-    """`operator: {autonomy: alone}` or `ask`: transitions with `approve` need no person any more, or need one."""
+    """`operator: {autonomy: alone}` or `ask`: transitions with `approve` no longer need a person, or need one."""
 
     level: Autonomy
 
@@ -102,7 +102,7 @@ class SetSkills:
 
 @dataclass(frozen=True, slots=True)
 class StoryPause:
-    """`wait: DURATION` [s]."""
+    """`wait: DURATION`: pause for `seconds` [s]."""
 
     seconds: float
 
@@ -131,7 +131,7 @@ class Expect:
     played: str | None = None
     """A motion that has finished."""
     did: str | None = None
-    """A verb of a feature that has finished, with at least these `arguments`."""
+    """An added verb that has finished, with at least these `arguments`."""
     arguments: Mapping[str, Any] = field(default_factory=dict)
     published: str | None = None
     """A route on which a message was sent."""

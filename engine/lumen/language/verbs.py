@@ -67,7 +67,7 @@ class VerbField:
     quantity: Quantity = Quantity.PLAIN
     """The kind of the value, which decides the value's unit."""
     names: str = ""
-    """The kind of thing that the value names: `motion`, `posture`, `controller`, `language` or `place`; or empty."""
+    """The kind of thing that the value names: `motion`, `posture`, `controller`, `language` or `place`; else ""."""
     others: bool = False
     """True if the value is the map of all keys that no other field has."""
 
