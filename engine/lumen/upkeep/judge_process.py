@@ -194,7 +194,8 @@ class AnswerPipe:
 def answering(max_memory: int | None = None) -> Iterator[AnswerPipe]:
     """Yield the pipe to the parent; the block ends when the parent closes it.
 
-    The process may use at most `max_memory` [bytes], None for no limit, and exits with OUT_OF_MEMORY if it needs more.
+    The process may use at most `max_memory` [bytes], and exits with OUT_OF_MEMORY if it needs more; None for no limit.
+    With a limit, it also runs with the priority NICENESS.
     Prints go to standard error.
     """
     if max_memory is not None:

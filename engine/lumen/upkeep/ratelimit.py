@@ -53,7 +53,7 @@ class TokenBucket:
     def wait(self, now: float, rate: float, most: float) -> float:
         """Return the time from `now` until a token is available [s]; 0 if one is, which the caller may then remove.
 
-        `rate` tokens are added per second, up to `most`.
+        Tokens since the last call are added first: `rate` per second, up to `most`.
         """
         self.tokens, self.since = min(most, self.tokens + rate * (now - self.since)), now
         return 0.0 if self.tokens >= 1.0 else (1.0 - self.tokens) / rate
