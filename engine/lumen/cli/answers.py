@@ -52,7 +52,7 @@ def why_lines(answer: Mapping[str, Any]) -> Iterator[str]:
 def why_not_lines(answer: Mapping[str, Any]) -> Iterator[str]:
     """Yield the lines of an answer to `why-not`: each reason, its guard's values, and the change that would help.
 
-    The reasons have the order of the answer, the nearest first; at most MAX_INACTIVE of them are about inactive states.
+    The reasons are in the answer's order, the nearest first; at most MAX_INACTIVE of them are about inactive states.
     """
     yield f"{_time(answer['at'])}  not {answer['what']}"
     if not answer["reasons"]:

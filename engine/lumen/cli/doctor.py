@@ -35,7 +35,7 @@ from lumen.run.setup import robot_options
 
 LISTENING = 2.0
 SKEW = 1.0
-"""The difference between two clocks [s] above which it is a warning."""
+"""The difference between two clocks [s] above which the finding is a warning."""
 SIGNS = {"ok": ("ok", "green"), "note": ("--", "dim"), "warning": ("??", "yellow"), "error": ("!!", "red")}
 
 

@@ -13,7 +13,7 @@ SHOWN = 10
 def replay_lines(report: ReplayReport, *, other: bool) -> Iterator[str]:
     """Yield the lines of a report: the counts, the first differences, and the entries that could not be compared.
 
-    `other` is true if the replay used other files than the recorded visits.
+    `other` is true if the replay used files other than those of the recorded visits.
     """
     counts = [f"{report.same} the same"]
     for how in ("differs", "says something else", "ends elsewhere"):

@@ -55,7 +55,7 @@ def robot_of(options: argparse.Namespace, project: Project, story: Story | None)
 
 
 def robot_wishes(options: argparse.Namespace) -> dict[str, str]:
-    """Return the values of the options of robots that were given on the command line, by option."""
+    """Return the robots' own options that were given on the command line, by name."""
     given = {option.name: vars(options)[option.destination] for option in robot_options()}
     return {name: value for name, value in given.items() if value}
 

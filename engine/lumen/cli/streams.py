@@ -26,7 +26,7 @@ def hush(stream: TextIO) -> None:
 
 
 def complain(text: str) -> None:
-    """Print a line to standard error; ignore it if the stream is closed."""
+    """Print a line to standard error; discard it if the stream can't be written."""
     try:
         print(text, file=sys.stderr, flush=True)
     except OSError:

@@ -19,7 +19,7 @@ FAREWELL = 5.0
 MAX_LINE_CHARACTERS = 1_000
 """The maximum length of a line; a longer one is split."""
 MAX_WAITING_LINES = 100
-"""The maximum number of lines that wait to be spoken; reading stops until one has been."""
+"""The maximum number of lines that wait to be spoken; reading pauses until one was spoken."""
 
 
 def typed_visitor(services: Services) -> "TypedVisitorPart | None":

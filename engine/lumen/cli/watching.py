@@ -15,7 +15,7 @@ from lumen.run.watcher import FileWatcher, SavedFiles
 from lumen.upkeep.garbage import GcScheduler, gc_paused
 
 QUIET = 0.01
-"""The time that files must be unchanged before they are read [s]: a half-written file would cause passing findings."""
+"""The time that files must be unchanged before they are read [s]: a half-written file would have false findings."""
 
 _CLEAR = "\x1b[2J\x1b[H"
 

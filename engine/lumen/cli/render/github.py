@@ -15,7 +15,7 @@ from lumen.run.linting.findings import Findings
 _COMMANDS: Mapping[Severity, str] = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.INFO: "notice"}
 
 SHOWN = 10
-"""The number of errors, and of warnings, that GitHub shows for one step; it drops the rest silently."""
+"""The number of findings of each severity that GitHub shows for one step; it drops the rest silently."""
 
 
 def render(found: Sequence[Findings], *, coloured: bool = False) -> str:

@@ -78,7 +78,7 @@ class _Excerpts:
 
 
 def _cut(line: str, place: Place) -> tuple[str, int, int]:
-    """Return at most MAX_EXCERPT_WIDTH characters of the line, and the begin and end of the place within them."""
+    """Return at most MAX_EXCERPT_WIDTH characters of the line, and where the place begins and ends in them."""
     start = min(place.column - 1, len(line))
     end = place.end_column - 1 if place.end_line == place.line else len(line.rstrip())
     if len(line) <= MAX_EXCERPT_WIDTH:
