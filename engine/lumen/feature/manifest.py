@@ -109,7 +109,7 @@ class SenseRow(NamedTuple):
 class BusRow(NamedTuple):
     """A kind of bus, by the scheme of its addresses.
 
-    The last three fields are for a bus with a broker; their classes are in `lumen.bus.brokers`.
+    `probe`, `stream` and `side_queues` are for a bus with a broker; their classes are in `lumen.bus.brokers`.
     """
 
     open: str
@@ -146,7 +146,7 @@ class ModuleRow(NamedTuple):
 
 
 class FunctionRow(NamedTuple):
-    """A function of the expression language. It is pure: the same arguments give the same value."""
+    """A function of the expression language. Without `clock` and `draws`, the same arguments give the same value."""
 
     call: str
     """The import string of the function; editors show the first paragraph of its docstring."""
@@ -192,11 +192,11 @@ class VerbRow(NamedTuple):
     Otherwise it continues. In either case the robot does not wait for it.
     """
     details: object = None
-    """The settings for the verb's performer, if a file of a project declares the verb."""
+    """The settings for the verb's performer, if a file of a project declares the verb; else None."""
     root: str = ""
-    """The project's folder, for such a verb of a loaded project."""
+    """The project's folder, for a verb that a loaded project declares; else empty."""
     robot: str = ""
-    """The robot's name, for such a verb of a loaded project."""
+    """The robot's name, for a verb that a loaded project declares; else empty."""
 
 
 RiskName = Literal["cosmetic", "behavior", "motion", "wiring", "restart"]
@@ -277,8 +277,8 @@ class Importer(NamedTuple):
     read: str
     """An import string of a `FileReader`, `MotionReader` (for a motion) or `RobotReader` (for a robot).
 
-    These are in `lumen.project.formats.importers`. For a `hint` it is a function from the content to a predicate for a
-    sentence about the file, with advice.
+    These are in `lumen.project.formats.importers`. For a `hint` it is a function from the content to the words that
+    complete a sentence about the file, with advice.
     """
     begins: str = ""
     """An import string of a function that returns True for the content of such a file, whatever its name."""
@@ -335,7 +335,7 @@ class PartRow(NamedTuple):
     phase: Phase
     """The phase in which the part is made and ticked.
 
-    In a phase, parts are in the order of their names, except for `after`.
+    Within a phase, parts are ordered by name, except where `after` demands another order.
     """
     make: str
     """An import string of a function from the services made so far to a part, a list of parts, or None."""
