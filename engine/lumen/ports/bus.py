@@ -15,7 +15,7 @@ class Message(NamedTuple):
     """A message as a subscriber receives it."""
 
     key: str
-    """The topic."""
+    """The key, which names the topic."""
     body: Any
     """JSON data."""
     reply_to: str = ""
@@ -102,8 +102,8 @@ class Bus(Protocol):
         """Send a body (JSON data), from any thread. Raises BusError after `close`, or if the body is not JSON data.
 
         Answers go to the key `reply_to` and carry `correlation_id`. A message that waits longer than `ttl` [s] may be
-        discarded; None: the limit of its route. The bus sets the fields that `origin` leaves empty: a unique id, its
-        own `sender`, and the time.
+        discarded; None means the limit of its route. The bus sets the fields that `origin` leaves empty: a unique id,
+        its own `sender`, and the time.
         """
         id, sender, time, cause = origin
         id = id or f"{PREFIX}-{next(NUMBERS)}"
