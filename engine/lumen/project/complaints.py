@@ -39,7 +39,7 @@ class Complaint:
     missing: str = ""
     """The key that is absent; empty for other findings."""
     suggestion: str = ""
-    """The key that was probably meant by an unknown one; empty if none is similar."""
+    """The key that was probably meant by an unknown one; empty without a similar key."""
 
 
 def complaints(error: Error, root: Any = None) -> Iterator[Complaint]:

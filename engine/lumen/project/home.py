@@ -18,7 +18,7 @@ ADDRESS_FILE = "door.json"
 ROBOTS_FOLDER = "robots"
 """The folder with one home for each robot of `robots:`."""
 MAX_RECORD_BYTES = 64_000_000
-"""The maximum size of one file of a home [bytes]; the saved state of a behaviour takes a few thousand."""
+"""The maximum size of one file of a home [bytes]; the saved state of a behaviour has a few thousand."""
 
 
 class Home:

@@ -50,7 +50,7 @@ def build_message(file: str, content: bytes) -> tuple[Mapping[str, Any] | None, 
     document, found = parse(file, content.replace(b"\t", b" "))  # JSON may be indented with tabs
     report = DocumentReport(document or Document(file, data))
     report.diagnostics += found
-    data = document.data if document and found else data  # of a duplicate key, JSON keeps the second
+    data = document.data if document and found else data  # of duplicate keys, JSON keeps the last one
     if isinstance(data, dict):
         examine(data, report)
     else:

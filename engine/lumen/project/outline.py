@@ -79,7 +79,7 @@ class BehaviorOutline:
     def _unknown(self, source: OutlinedState, target: str, where: NodePath, written: str) -> None:
         self.report.missed.add(target.rpartition(".")[2].lstrip("#"))
         message = f"there is no state `{written}` to go to from {source.title}"
-        if len(self.report.missed) > MAX_COMPARED_NAMES:  # searching a suggestion for each would take long
+        if len(self.report.missed) > MAX_COMPARED_NAMES:  # a search for suggestions would take too long
             self.report(UNKNOWN_STATE, where, message, hint="write the name of a state in this file")
             return
         known = self._known(source, target)

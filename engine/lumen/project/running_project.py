@@ -125,7 +125,7 @@ def _copied() -> Path:
 
     Permissions are not copied, so that a copy of a read-only installation can be written. Raises UsageError on failure.
     """
-    import shutil  # late, as tempfile is: lint of a project does without
+    import shutil  # late, like tempfile: lint of a project does not need it
     import tempfile
 
     if (copy := copy_of_shipped()).is_dir():

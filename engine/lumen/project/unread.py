@@ -81,7 +81,7 @@ def _within(root: Path, folder: str, models: Collection[str], look: Callable[[Pa
         if os.path.isdir(root / path):
             if path in ALL_FOLDERS or (kind_in(path) and _robot_of(path) in models):
                 yield from _within(root, path, models, look)
-            elif not (is_robots_own(path) and _has_own(root, path)):  # which is reported by its motions
+            elif not (is_robots_own(path) and _has_own(root, path)):  # such a folder is reported with its motions
                 yield from _of_folder(root, path, models, look)
         else:
             yield from _of_file(folder, name)

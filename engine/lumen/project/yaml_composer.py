@@ -96,7 +96,7 @@ class _Composer:
         if before >= MAX_NODES:
             raise _too_many(event)
         node: yaml.Node
-        if kind is yaml.ScalarEvent:  # most events are: they need no further call
+        if kind is yaml.ScalarEvent:  # like most events, which thus need no further call
             value = event.value.translate(self._meant) if self._meant else event.value
             node = yaml.ScalarNode(event.tag or _TEXT, value, event.start_mark, event.end_mark, event.style)
             if event.anchor is None:

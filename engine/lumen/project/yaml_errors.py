@@ -98,7 +98,7 @@ def syntax_error(file: str, text: str, error: Exception) -> Diagnostic:
     context = getattr(error, "context", None) or ""
     mark: Any = getattr(error, "problem_mark", None) or getattr(error, "context_mark", None)
     lines, failed = lines_of(text), mark.line
-    source = lines[failed] if failed < len(lines) else ""  # YAML has other ends of lines as well
+    source = lines[failed] if failed < len(lines) else ""  # YAML also has other line ends
     if "\t" in (before := source[: mark.column + 1]) and not before.strip():
         column = before.index("\t") + 1
         place = Place(file, failed + 1, column, failed + 1, column + 1)
@@ -125,7 +125,7 @@ def syntax_error(file: str, text: str, error: Exception) -> Diagnostic:
 
 def _misfits(file: str) -> Callable[[str], int | None] | None:
     """Return a function that counts the faults which the file's schema finds in a text; None without a schema."""
-    from lumen.project.schema import misfits  # it imports what imports this module
+    from lumen.project.schema import misfits  # late: it imports modules that import this one
 
     kind = kind_of(file)
     return partial(misfits, kind) if kind else None
