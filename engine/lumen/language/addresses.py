@@ -44,7 +44,7 @@ def fault_of_broker(url: str) -> str:
     try:
         parts = urlsplit(url)
         host = parts.hostname
-    except ValueError:  # its text may hold the password
+    except ValueError:  # the text of the error may hold the password
         return "its host is not valid, or it contains a character that is not allowed in an address"
     if not host:
         return "it has no host"

@@ -204,7 +204,7 @@ def _is_slip(word: str, meant: str) -> bool:
         return True
     if "." in meant and "." not in word and _is_slip(word, meant.rpartition(".")[2]):
         return True  # the last part of a name alone
-    row = list(range(len(meant) + 1))  # the edit distance of Levenshtein
+    row = list(range(len(meant) + 1))  # Levenshtein's edit distance
     for i, letter in enumerate(word):
         before, row[0] = row[0], i + 1
         for j, other in enumerate(meant):

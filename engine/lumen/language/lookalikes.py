@@ -28,7 +28,7 @@ def difference(word: str, other: str) -> str:
 
 
 def other_sign(text: str) -> str:
-    """Describe the first look-alike character in a text; empty if there is none."""
+    """Describe the first look-alike character in a text; empty for a text without any."""
     return next(_odd(text), "")
 
 

@@ -13,5 +13,5 @@ def is_finite_number(value: object) -> TypeGuard[int | float]:
     """Return True for a number with a finite value that a float can hold."""
     try:
         return is_number(value) and isfinite(value)
-    except OverflowError:  # an integer beyond all floats
+    except OverflowError:  # an integer that is too large for a float
         return False
