@@ -45,7 +45,7 @@ def state_folder() -> Path:
     try:
         return Path(given) / "lumen" if given else Path.home() / ".local" / "state" / "lumen"
     except RuntimeError:  # a user without a home
-        import tempfile  # late: it imports shutil and random, which lint does without
+        import tempfile  # late: it imports shutil and random, which lint does not need
 
         return Path(tempfile.gettempdir()) / f"lumen-{os.getuid() if hasattr(os, 'getuid') else ''}"
 

@@ -12,7 +12,7 @@ MAX_DOUBLINGS = 60
 
 
 def pause_after(failures: int, first: float, longest: float = inf) -> float:
-    """Return the pause after a number of failures in a row [s]: 0 after none, `first` after one, then twice the last.
+    """Return the pause after a number of failures in a row [s]: 0 after none, `first` after one, doubled by each more.
 
     It is never longer than `longest`.
     """
