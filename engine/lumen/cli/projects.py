@@ -10,7 +10,7 @@ from lumen.project.running_project import is_substituted, running_project
 def shown_project(path: str | None) -> Path:
     """Return the folder of a project: `path`, by default the working directory or its nearest parent with lumen.yaml.
 
-    If there is none, return the copy of the shipped project that `lumen run` plays, or else the shipped project
+    Without one, return the copy of the shipped project that `lumen run` plays, or else the shipped project
     itself, and print that on standard error. Raises UsageError if `path` is not a folder.
     """
     root = running_project(path)

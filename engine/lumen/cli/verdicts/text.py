@@ -63,7 +63,7 @@ def conclusion(verdict: Verdict, *, coloured: bool = False) -> Iterator[str]:
 def _sayings(verdict: Verdict, coloured: bool) -> Iterator[str]:
     """Yield the share of sayings that the right row matches, then those that fail."""
     right, every = len(verdict.sayings) - len(verdict.misheard), len(verdict.sayings)
-    share = f"sayings: {right:,} of {every:,} ({int(100 * right / every)} %)"  # rounded down: 100 % is all
+    share = f"sayings: {right:,} of {every:,} ({int(100 * right / every)} %)"  # rounded down: 100 % means all of them
     yield f"\n{paint(share, 'bold', 'red' if verdict.misheard else 'green', on=coloured)}"
     for one in verdict.misheard:
         yield f"  {paint(str(one.place), 'bold', on=coloured)}: {misheard(one)}"
