@@ -139,7 +139,7 @@ def _manifest(distribution: Distribution) -> tuple[Feature | None, str]:
         return feature, next(wrong_rows(feature), "")
     except KeyboardInterrupt:
         raise
-    except BaseException as error:  # of code that is not Lumen's: even SystemExit
+    except BaseException as error:  # from code that is not Lumen's: even SystemExit
         return None, f"its manifest `{distribution.manifest}` raised {described(error)}"
 
 
