@@ -18,12 +18,12 @@ WRONG_SIGN = Code("wrong-sign", "controllers", WARNING, "the robot turns away fr
 MAX_GAIN = 2.0
 """The largest gain that is not reported.
 
-With a delay of 100 to 200 ms, a loop of gain 1.5 does not overshoot, and one of 3 does by 46 %.
+With a delay of 100 to 200 ms, a loop with a gain of 1.5 does not overshoot; one with a gain of 3 overshoots by 46 %.
 """
 
 OPPOSITE = {"left": "right", "right": "left", "up": "down", "down": "up", "forward": "backward", "backward": "forward"}
 GROWING_ANGLE_TURNS = {"yaw": "left", "pitch": "down"}
-"""The direction in which a joint turns as its angle grows, by the end of the joint's role."""
+"""The direction in which a joint turns as its angle grows; each key is the end of the name of the joint's role."""
 
 
 def check(controller: ControllerDefinition, report: DocumentReport, draft: ProjectDraft) -> None:

@@ -25,7 +25,7 @@ class Asking(NamedTuple):
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report phrases that an earlier row also has, and rows whose phrases earlier guards match before each lookup."""
+    """Report phrases that an earlier row also has, and rows whose phrases all match a guard before each lookup."""
     owners = {
         id(row): (t.report, name, i)
         for t in word_tables(draft)

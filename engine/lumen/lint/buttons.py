@@ -65,7 +65,7 @@ def _answered(machine: MachineDefinition, state: State, event: str, others: tupl
 
 
 def _around(draft: ProjectDraft, name: str) -> Iterator[MachineDefinition]:
-    """Yield the behaviours that may run together with this one, because one invokes the other, transitively."""
+    """Yield this behaviour, then those that may run with it because one invokes the other, directly or indirectly."""
     invoked = {other: set(_invoked(machine)) for other, machine in draft.behaviors.items()}
     found = [name]
     for one in found:
@@ -79,14 +79,14 @@ def _invoked(machine: MachineDefinition) -> Iterator[str]:
 
 
 def together(machine: MachineDefinition, one: State, other: State) -> bool:
-    """Return whether two states can be active at once: one contains the other, or they are in two regions."""
+    """Return whether two states can be active at once: one contains the other, or they are in different regions."""
     around, beside = _line(machine, one), _line(machine, other)
     common = next(path for path in around if path in beside)
     return common in (one.path, other.path) or machine.states[common].kind is StateKind.PARALLEL
 
 
 def _line(machine: MachineDefinition, state: State) -> list[str]:
-    """Return the path of a state and of its ancestors, from the inside out."""
+    """Return the paths of a state and its ancestors, from the inside out."""
     found = [state.path]
     while (parent := machine.states[found[-1]].parent) is not None:
         found.append(parent)

@@ -24,7 +24,8 @@ class UncertainError(Exception):
 class ChainSurvey:
     """Shared data of all chains of a machine: the order of its states, the situations seen, and the work done.
 
-    Answers about a state or a transition are stored, because each chain needs them again.
+    Answers about a state or a transition are stored, because each chain needs them again. Methods that count work raise
+    UncertainError if it exceeds MAX_WORK.
     """
 
     def __init__(self, machine: MachineDefinition, ends: dict[tuple[int, int], bool | None]) -> None:

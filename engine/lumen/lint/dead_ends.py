@@ -48,7 +48,7 @@ def check(draft: ProjectDraft) -> None:
 
 
 def _ended(machine: MachineDefinition, report: DocumentReport) -> None:
-    """Report transitions to the history of a parent from the target of the parent's end.
+    """Report transitions to the history of a parent from the state to which the parent's `done.state` leads.
 
     Such a history remembers the final state, so the parent ends again at once.
     """
@@ -209,7 +209,7 @@ class _Ways:
             state = self.machine.states[state.parent] if state.parent is not None else None
 
     def leaving(self, parallel: State) -> list[Transition]:
-        """Return the transitions below a parallel state that lead out of it: any region can leave it for all."""
+        """Return the transitions below a parallel state that lead out of it: each of them leaves all its regions."""
         if parallel.path not in self.exits:
             self.exits[parallel.path] = [
                 transition
@@ -238,7 +238,7 @@ class _Ways:
         self.report(DEAD_END, state.where, message, hint, key=True, related=self.from_where(path))
 
     def lost(self, track: State, home: State, lost: list[str], dead: Iterable[str]) -> None:
-        """Report states from which no transitions lead to `home`; of states that lead to one another only the first."""
+        """Report states from which no transitions lead to `home`; of states that are connected, only the first."""
         ends = [("in", path) for path in dead]
         ends += [("in", p) for p in track.children if self.machine.states[p].kind is StateKind.FINAL]
         ended = spread(ends, self.graph.before)
@@ -280,7 +280,7 @@ class _Ways:
         )
 
     def late(self, state: State, transition: Transition) -> bool:
-        """Return whether a transition is the `at` of an outer state, which may be hours away from an inner state."""
+        """Return whether a transition is the `at` of an outer state: an inner state may have to wait hours for it."""
         within_others = state.parent is not None and state.path not in self.machine.states[state.parent].initial
         return transition.schedule is not None and transition.source != state.path and within_others
 

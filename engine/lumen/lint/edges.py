@@ -16,7 +16,7 @@ from lumen.project.draft import ProjectDraft
 WALK_BEYOND_GROUND = Code("walk-beyond-ground", "robot", WARNING, "a walk leads off the ground of the hall")
 
 MAX_WAYS = 2_000
-"""The greatest number of visits to states that are followed, because a behaviour may have very many ways."""
+"""The greatest number of visits to states that are followed, because a behaviour may have very many routes."""
 
 STEP = 0.02
 """The distance between the points of a walk that are checked [m]."""
@@ -69,7 +69,7 @@ def check(draft: ProjectDraft) -> None:
 
 
 class _Ways:
-    """Follows the ways on which a behaviour can lead the robot from its start; each walk is made once on a way.
+    """Follows the routes on which a behaviour can lead the robot from its start, each until it repeats a walk.
 
     Guards are assumed to hold. After a walk that may be interrupted, or that another behaviour may request, the robot's
     position is unknown: nothing is reported for later walks.
@@ -80,7 +80,7 @@ class _Ways:
         self._entered: dict[str, Iterable[str]] = {}
 
     def strays(self) -> Iterator[Stray]:
-        """Yield each walk that leaves the ground; a walk is repeated if several ways lead to it."""
+        """Yield each walk that leaves the ground; a walk occurs several times if several routes lead to it."""
         waiting: list[tuple[str, PlaceOnGround, frozenset[NodePath]]] = [("", PlaceOnGround(), frozenset())]
         seen = set(waiting)
         while waiting and len(seen) < MAX_WAYS:

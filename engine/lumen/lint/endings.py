@@ -13,7 +13,7 @@ _ANSWERS = ("done.command", "error.command", "cancelled.command")
 
 
 def ending_fault(machine: MachineDefinition, descriptor: str) -> str:
-    """Return a hint why nothing can raise the event of a descriptor; empty if something can."""
+    """Return a hint that explains why nothing can raise the event of a descriptor; empty if something can."""
     words = descriptor.removesuffix(".*").split(".")
     family, name = ".".join(words[:2]), ".".join(words[2:])
     if family in _ANSWERS:

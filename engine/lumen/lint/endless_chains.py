@@ -15,7 +15,7 @@ ENDLESS_CHAIN = Code("endless-chain", "statecharts", WARNING, "transitions loop 
 
 
 MAX_STEPS_TO_REST = 20
-"""The number of events and transitions after which an entered state should rest."""
+"""The number of steps within which a machine must rest after it enters a state; else the state counts as left."""
 
 MAX_SHOWN_TRANSITIONS = 6
 """The number of transitions of a chain that its message names."""

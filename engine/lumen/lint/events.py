@@ -82,7 +82,8 @@ def declared(draft: ProjectDraft, machine: MachineDefinition) -> dict[str, Any]:
 def outcome(machine: MachineDefinition, transition: Transition) -> dict[str, Any] | None:
     """Return the event of an `onDone` or `onError` of an invoke, with the schema of its data; else None.
 
-    The `onDone` of a `do` counts as well if the last action of the `do` has a result.
+    The `onDone` of a `do` counts as well if the last action of the `do` has a result. The schema is None if the data
+    can be anything.
     """
     state = machine.states[transition.source]
     if transition.event == f"done.do.{state.name}" and (result := _result(state.do)):

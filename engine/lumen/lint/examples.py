@@ -20,11 +20,11 @@ NEVER_HEARD = Code("never-heard", "hearing", WARNING, "a row of `hears` never ma
 SHADOWED_PHRASE = Code("shadowed-phrase", "hearing", WARNING, "a phrase matches a different row instead of its own")
 
 MAX_TRIED = 300
-"""The number of sentences that are tried in search of one that matches a row with `not` or `asked`."""
+"""The greatest number of sentences that are tried in search of one that matches a row with `not` or `asked`."""
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report phrases that match a row other than their own, and rows that no sentence matches."""
+    """Report phrases that match a row other than their own, rows that no sentence matches, and answers never given."""
     hearing = hearing_behaviors(draft)
     looked = looked_up(draft) if hearing else ()
     for name in hearing:
@@ -169,7 +169,7 @@ class _Examples(HeardRows):
         )
 
     def hiding(self, outer: str) -> str:
-        """Describe the transition that handles every sentence in all inner states; else empty."""
+        """Describe a transition that handles every sentence if all inner states have one; else return an empty text."""
         takers = [
             next((t for state in self.between(leaf, outer) for t in state.transitions if _takes_all(t)), None)
             for leaf in self.leaves(outer)

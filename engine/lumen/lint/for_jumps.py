@@ -1,4 +1,4 @@
-"""Transitions from outside into a state with `for`, at which no entry of its list is selected."""
+"""Transitions that lead from outside into a state with `for`, where no entry of its list is selected yet."""
 
 from lumen.language.diagnostics import ERROR, Code
 from lumen.language.machines import MachineDefinition, StateKind

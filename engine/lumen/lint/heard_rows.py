@@ -83,7 +83,7 @@ class HeardRows:
         return hearing_of(self.machine).order(min(self.by_state[path][0].numbers), text, {})
 
     def taker(self, taken: Sequence[Taken], row: SaidRow) -> Taken | None:
-        """Return the first match if it is another row without a guard and with another effect than `row`; else None."""
+        """Return the first match if it is a row without a guard whose effect differs from that of `row`; else None."""
         for one in taken:
             other = self.by_number[one.number]
             if one.number in row.numbers or any(t.guard for t in other.candidates) or _alike(other, row):
@@ -129,7 +129,7 @@ class HeardRows:
             at = self.machine.states[at].parent
 
     def between(self, leaf: str, outer: str) -> list[State]:
-        """Return a state and its ancestors, from the inside out, up to but without the state `outer`."""
+        """Return a state and its ancestors, from the inside out, up to but not including `outer`."""
         return [state for state in self.around(leaf) if within(state.path, outer) and state.path != outer]
 
     def leaves(self, outer: str) -> list[str]:

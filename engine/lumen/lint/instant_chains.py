@@ -295,7 +295,7 @@ class InstantChain:
 
 
 def round_of(chain: InstantChain) -> list[TakenTransition]:
-    """Return the transitions of a loop that returns to a situation or grows without end.
+    """Return the transitions of a loop in which a situation recurs or the queue of events grows without end.
 
     Empty if no loop is certain.
     """

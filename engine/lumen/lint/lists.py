@@ -19,7 +19,7 @@ Entries = Sequence[Mapping[str, Any]]
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report entries that lack a key, or have a key that no other entry has."""
+    """Report entries that lack a key that most entries have, or have a key that most entries lack."""
     for tables in word_tables(draft):
         for name, entries in tables.lists.items():
             _even(tables.report, name, entries)

@@ -12,10 +12,10 @@ from lumen.project.draft import ProjectDraft
 
 
 def with_language(draft: ProjectDraft, files: Mapping[str, bytes], language: str, source: str) -> dict[str, bytes]:
-    """Return the files with an entry for a language beside each entry for `source`: the same words, marked as to do.
+    """Return the changed files, with an entry for `language` beside each entry for `source`: the same words after TODO.
 
-    If `source` was the only language, a `say` text without a language becomes a text in both. Everything else in the
-    files, including comments, stays as it is.
+    `languages` in lumen.yaml gets the language too. If `source` was the only language, a one-line `say` text without a
+    language becomes a text in both. Everything else in these files, including comments, stays as it is.
     """
     assert draft.main is not None  # the caller must have checked the project
     edits: dict[str, list[Edit]] = {}
@@ -47,7 +47,7 @@ def _to_do(value: Any) -> Any:
 def beside(
     report: DocumentReport, text: FileText, around: NodePath, last: NodePath, entry: str, dash: str = ""
 ) -> Edit:
-    """Return the edit that writes an entry after the last one: between brackets on its line, else on the next line."""
+    """Return the edit that writes an entry after the last one: on the same line if in brackets, else on a new line."""
     spans = report.document.spans
     whole, end = spans[around].value, spans[last].value
     if text.line(whole.line)[whole.column - 1 : whole.column] in ("{", "["):

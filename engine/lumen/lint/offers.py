@@ -1,4 +1,4 @@
-"""Offers to a language model: they need an event of the behaviour's own with described data."""
+"""Offers to a language model: the behaviour must declare the offered event and describe its data."""
 
 from lumen.language.diagnostics import WARNING, Code
 from lumen.project.draft import ProjectDraft
@@ -12,7 +12,7 @@ MISPLACED_OFFER = Code(
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report `offer: true` on a transition whose event is not declared under `events`."""
+    """Report `offer: true` on a row of `hears`, or on a transition whose event is not declared under `events`."""
     for name, machine in draft.behaviors.items():
         report = draft.report("behaviors", name)
         for transition in (t for state in machine.states.values() for t in state.transitions if t.offer):

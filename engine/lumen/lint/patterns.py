@@ -20,7 +20,7 @@ DEAD_SLOT = Code("dead-slot", "hearing", WARNING, "a slot of a phrase can never 
 FOREIGN_PATTERN = Code("foreign-pattern", "hearing", WARNING, "a phrase uses the syntax of another tool")
 
 _SIGNS = re.compile(r"[()\[\]{}|<>/\\*^$@%,;\n]")
-"""The signs of which a phrase must have one to be wrong here."""
+"""A phrase without any of these signs has none of the faults reported here."""
 
 _PATTERN_SIGNS = re.compile(r"[()\[\]{}|]")
 _MIN_PARTS = 3

@@ -1,4 +1,4 @@
-"""Movements of a robot that rests since an earlier action of the same state: its motors have no stiffness."""
+"""Movements of a robot that an earlier action of the same state put to rest: its motors have no stiffness."""
 
 from collections.abc import Sequence
 

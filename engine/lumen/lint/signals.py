@@ -127,7 +127,10 @@ def _field(
 def _context(
     draft: ProjectDraft, report: DocumentReport, variable: Variable | None, binding: ContextInput | ContextBinding
 ) -> Mapping[str, Any] | None:
-    """Return the schema of the bound context key; None if no behaviour declares it, which is reported."""
+    """Return the schema of the bound context key; None if no behaviour declares it.
+
+    That is reported unless an unreadable part of a behaviour may declare the key.
+    """
     path = (*binding.where, "context")
     declared = {
         key: machine.types.get(key, schema_of(value))

@@ -153,7 +153,7 @@ def _rounds(
 
 
 def _settled(machine: MachineDefinition, transition: Transition) -> str:
-    """Return the path of the atomic state to which a transition leads; empty if it leads to several states."""
+    """Return the path of the atomic state to which a transition leads; empty if it does not lead to exactly one."""
     if not transition.targets:
         return transition.source
     if len(transition.targets) > 1:

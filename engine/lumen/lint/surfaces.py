@@ -77,7 +77,7 @@ def sample_surface(controller: ControllerDefinition) -> SurfaceSamples:
 
 
 def _corners(controller: ControllerDefinition) -> Iterator[dict[str, float]]:
-    """Yield combinations of the inputs, if several inputs decide about one output; none if there would be too many."""
+    """Yield combinations of the inputs, if several inputs affect one output; none if there would be too many."""
     names = [n for n, v in controller.inputs.items() if abs(v.minimum) < 1e300 and abs(v.maximum) < 1e300]
     points, most = CORNERS
     while len(names) > 1 and points > 1 and points ** len(names) > most:
@@ -129,7 +129,7 @@ def _finer(controller: ControllerDefinition) -> ControllerDefinition:
 
 
 def check(controller: ControllerDefinition, report: DocumentReport, seen: SurfaceSamples) -> None:
-    """Report faults of the surface: undefined values, steps, reversals, a value at rest, an unused range."""
+    """Report undefined values, steps, reversals, values other than 0 at rest, and unfit ranges and resolutions."""
     for variable in controller.outputs.values():
         _silence(controller, variable, report, seen)
         _reached(controller, variable, report, seen)

@@ -48,7 +48,7 @@ def _cut(
 
 
 def duration(block: Iterable[PlacedAction], motions: Mapping[str, MotionDefinition]) -> float:
-    """Return the least duration of these actions in sequence [s], except that of alternative texts the longest counts.
+    """Return the least duration of these actions in sequence [s]; among alternative texts, the longest counts.
 
     Unknown durations, such as of an expression's text or of a walk's turn, count as 0.
     """

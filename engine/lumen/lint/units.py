@@ -1,4 +1,4 @@
-"""Angles and lengths that are probably in another unit than the file's."""
+"""Angles and lengths that are probably in a unit other than the file's."""
 
 from collections.abc import Iterator
 from math import pi
@@ -28,7 +28,7 @@ HALF_TURN_PARTS = frozenset(round(pi / n, digits) for n in (1, 2, 3, 4, 6) for d
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report angles in radians among degrees, head turns and walks beyond limits, and turns of more than one round."""
+    """Report angles in radians among degrees, head turns and walks beyond limits, and more than one full turn."""
     for name in draft.motions:
         _radians(draft.report("motions", name), draft.body)
     stage = draft.settings.stage if draft.settings else None

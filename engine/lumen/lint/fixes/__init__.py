@@ -23,7 +23,8 @@ SLIP = "lumen.lint.fixes.misspellings:slip"
 def fixes(diagnostic: Diagnostic, files: Mapping[str, bytes]) -> list[Fix]:
     """Return the fixes for this finding, the most likely first; empty if only the author can decide.
 
-    Raises LumenError if the repair belongs to another installed package and raises an exception.
+    Raises LumenError if the repair belongs to another installed package and raises an exception, or returns anything
+    but a list of `Fix`.
     """
     content = files.get(diagnostic.place.file)
     where = table("fixes").get(diagnostic.code, SLIP if diagnostic.code.startswith(("unknown-", "wrong-")) else "")
