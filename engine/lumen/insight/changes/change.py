@@ -83,7 +83,7 @@ MAX_SHOWN_CHARACTERS = 60
 
 
 def seconds(time: float | None) -> str:
-    """Return a time in [s] as text: `3 s`, `500 ms` or `2 min`; `none` for None."""
+    """Return a time [s] as text: `3 s`, `500 ms` or `2 min`; `none` for None."""
     if time is None:
         return "none"
     if time and time < 1.0:

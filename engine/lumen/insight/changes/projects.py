@@ -16,7 +16,7 @@ MAX_SUMMARY_CHANGES = 4
 """The number of changes up to which a summary names each; with more, kinds with more than two changes are counted."""
 
 _SHARED_MOVEMENTS = ("gestures", "life")
-"""The folders in motions/ that are for all robots; each other is named after a robot's model."""
+"""The folders in motions/ that are for all robots; every other folder is named after a robot's model."""
 _SELF = ("root", "hash", "documents")
 
 
@@ -41,7 +41,7 @@ def risk(found: Sequence[Change]) -> Risk:
 
 
 def summary(found: Sequence[Change]) -> str:
-    """Return all changes as one line; texts are counted, and so are kinds with many changes."""
+    """Return all changes as one line; texts, kinds with many changes, and the rest of a long line are only counted."""
     parts: list[str] = []
     for kind, group in groupby(sorted(found, key=lambda change: change.kind), lambda change: change.kind):
         rows = list(group)
@@ -99,7 +99,7 @@ def _movements(old: Project, new: Project) -> Iterator[Change]:
 
 
 def _file_of_movement(change: Change, project: Project) -> str:
-    """Return the file of a motion or style of life: that in the robot's own folder, if there is one; empty if none.
+    """Return the file of a change: that in the robot's own folder, else that for all robots; empty if there is neither.
 
     No other robot's files were read.
     """

@@ -58,7 +58,7 @@ class WhyNotAnswer:
 
 
 def why(steps: Iterable[RecordedStep], what: str = "", until: float | None = None) -> WhyAnswer:
-    """Return why `what` happened, the last time up to `until` [s, on the exhibition's clock]; None means the end.
+    """Return why `what` last happened up to `until` [s, on the exhibition's clock]; None means the end of the steps.
 
     `what` is a text that was said (or some of its words), a state, a motion, the id of a command, or empty for the last
     thing that happened. Raises UsageError, with a hint, if it did not happen.

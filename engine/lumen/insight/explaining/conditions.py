@@ -42,7 +42,7 @@ def first_false(guard: Expression, scope: Scope) -> GuardPart | None:
 
 
 def holds(guard: Expression | None, scope: Scope) -> bool:
-    """Return whether a guard is true; no guard is true, and a guard without a value is false."""
+    """Return whether a guard is true; None counts as true, and a guard that has no value as false."""
     try:
         return guard is None or compile_guard(guard.source)(scope)
     except ExpressionError:

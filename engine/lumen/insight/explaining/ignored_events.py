@@ -50,7 +50,7 @@ class IgnoredEvent(NamedTuple):
 
 
 def ignored(machine: MachineDefinition, step: Step) -> IgnoredEvent | None:
-    """Return why the event of a step changed nothing; None if it did, or if no state ever listens to it.
+    """Return why the event of a step changed nothing; None if it had an effect, or if no state ever listens to it.
 
     For an event that the behaviour sends itself, such as a timer or the end of a `do`, only false guards are reasons.
     """

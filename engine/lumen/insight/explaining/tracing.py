@@ -86,7 +86,7 @@ class Deed(NamedTuple):
     state: str
     """The path of the state whose `entry`, `do`, `exit` or transitions contain the action."""
     microstep: TracedMicrostep | None
-    """The last microstep before it in this step."""
+    """The last microstep before it in this step; None if there was none."""
 
     @property
     def block(self) -> str:

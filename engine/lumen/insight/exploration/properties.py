@@ -62,7 +62,7 @@ def _triggers(machine: MachineDefinition, search: StateSpaceSearch, property: Pr
 def _late(
     machine: MachineDefinition, search: StateSpaceSearch, property: Property, node: SearchNode
 ) -> tuple[QuietRun, SearchNode] | None:
-    """Return a run in which the deadline passes, with the configuration at its start; None if all runs meet it."""
+    """Return a run that misses the deadline, with its first configuration; None if MAX_QUIET_STEPS steps show none."""
     assert property.eventually is not None
     deadline = nanoseconds(node.snapshot.at) + nanoseconds(property.within)
     ahead, seen = deque([QuietRun(node.snapshot, node.commands)]), set[object]()

@@ -68,7 +68,7 @@ def _chosen(columns: list[list[Any]]) -> Iterator[tuple[Any, ...]]:
 
 
 def example(schema: Any) -> Any:
-    """Return a plain value that fits a JSON Schema."""
+    """Return a plain value that fits a JSON Schema; an empty map if `schema` is not one."""
     if not isinstance(schema, Mapping):
         return {}
     shown = next(iter(schema.get("examples") or ()), None)

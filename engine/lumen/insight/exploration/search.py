@@ -167,7 +167,7 @@ class StateSpaceSearch:
 def still(
     commands: Mapping[str, BodyCommand], started: tuple[Command, ...], stimulus: Stimulus | None
 ) -> dict[str, BodyCommand]:
-    """Return the awaited commands by id, without the one that was just answered."""
+    """Return the awaited commands by id: with those just started, and without the one that the stimulus answers."""
     answer = answer_of(stimulus.event) if stimulus else None
     kept = {id: c for id, c in commands.items() if not (answer and id == answer.id)}
     return kept | {c.id: c.command for c in started if isinstance(c, Start) and c.id.startswith("d")}

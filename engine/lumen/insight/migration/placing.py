@@ -79,7 +79,7 @@ class Placement(NamedTuple):
 
 
 class Unplaced(NamedTuple):
-    """A state in which nothing can be active: its child was removed, and no `onReload` names another state."""
+    """A compound state without exactly one active child, for which no `onReload` names another state."""
 
     state: StateNode
     """The new state."""

@@ -53,7 +53,7 @@ class Refusal(NamedTuple):
     hint: str = ""
     """A hint on how to fix it."""
     state: str = ""
-    """The name of the active state that is gone; empty if it is another reason."""
+    """The name of the active state that is gone or has ended; empty for any other reason."""
     behavior: str = ""
     """The name of the new behaviour's file."""
     where: NodePath = ()

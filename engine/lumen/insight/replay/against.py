@@ -1,8 +1,8 @@
 """A recorded visit played again with other files, to see what they would have said and done.
 
-The behaviour changes to the other files where it was at home last, as in a reload. Then it receives the recorded events
-at their times. A recorded answer goes to the new command in its place: the same command, or the next of its kind. A
-command without a counterpart takes as long as on the recording robot.
+The behaviour changes to the other files at the moment when it was last at home, as in a reload. Then it receives the
+recorded events at their times. A recorded answer goes to the new command in its place: the same command, or the next of
+its kind. A command without a counterpart takes as long as on the recording robot.
 """
 
 import heapq

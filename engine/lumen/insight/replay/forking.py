@@ -43,11 +43,11 @@ def fork(
     saved: Project | None = None,
     hurry: Callable[[], None] = lambda: None,
 ) -> ForkedRun:
-    """Return the fork at the first event from that position on, up to the next entry that is not a step.
+    """Return the fork at the first event from that position on, up to the next jump; keyframes are skipped.
 
     `event` replaces that event; `saved` are other files. `takes` gives durations of commands that were not recorded;
-    `hurry` is called at each step and may raise. Raises LumenError if the behaviour's state at that position is
-    unknown.
+    `hurry` is called at each step and may raise. Raises LumenError if there is no such event, or if the state of the
+    behaviour before it is unknown.
     """
     number = next((n for n, entry in enumerate(entries) if entry.position >= position), len(entries))
     then = _inputs(entries[number:])

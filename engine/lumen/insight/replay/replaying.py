@@ -50,11 +50,11 @@ class ReplayedStep(NamedTuple):
     before: Snapshot | None = None
     """The snapshot from which the step was taken."""
     step: Step | None = None
-    """The step; None for a jump, or if it could not be taken."""
+    """The step; None for a jump that is not a start, or if it could not be taken."""
     was: StepOutcome | None = None
-    """The recorded result."""
+    """The recorded result; None if there is nothing to compare."""
     now: StepOutcome | None = None
-    """The result of the replay."""
+    """The result of the replay; None if there is nothing to compare."""
     unknown: str = ""
     """Why the step can't be taken: the state is unknown, or a visitor's data was deleted from the entry."""
 
