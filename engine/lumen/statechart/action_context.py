@@ -31,7 +31,7 @@ class ActionContext(Protocol):
         """Set a context key; raise ActionError if the value does not have the key's type."""
 
     def draw(self, count: int) -> int:
-        """Return a random number from 0 to `count` - 1."""
+        """Return a random whole number from 0 to `count` - 1."""
 
     def emit(self, command: Command) -> None:
         """Append a command to those of the step."""
@@ -46,7 +46,10 @@ class ActionContext(Protocol):
         """Raise error.execution for the action at that place in the YAML."""
 
     def send(self, id: str, delay: float, event: str, data: Any, to: str) -> None:
-        """Set a timer: after `delay` [s] the event arrives from outside, or goes `to` another behaviour."""
+        """Set a timer: after `delay` [s] the event arrives as if from outside, or goes to the behaviour `to`.
+
+        `to` is empty for the machine itself. Raises ActionError if too many timers are waiting.
+        """
 
     def cancel_send(self, id: str) -> None:
         """Cancel the `send` with that id if it is not due yet."""

@@ -80,7 +80,7 @@ class Activities:
             self.halted = {**self.halted, node.path: Halted(self.positions[node.path], at)}
 
     def forget(self, path: str) -> Halted | None:
-        """Remove and return the stored position of the `do` of a state that is entered again."""
+        """Remove and return the stored position of the `do` of a state that is entered again; None if there is none."""
         found = self.halted.get(path)
         if found:
             self.halted = {other: halted for other, halted in self.halted.items() if other != path}

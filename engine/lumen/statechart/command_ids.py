@@ -20,7 +20,7 @@ class CommandAnswer(NamedTuple):
     """`done`, `error`, `cancelled`, `lost` (the robot has forgotten it) or `answer` (a part of an answer, or all)."""
     id: str
     reason: str
-    """Why the command did not succeed; else the kind."""
+    """The reason that the robot gives, such as for a failure; the kind if it gives none."""
     data: Any = None
     """The data of the event, such as the answer."""
 
@@ -45,7 +45,7 @@ def outer_id(id: str, owner: str) -> str:
 
 
 def inner_id(id: str) -> tuple[str, str]:
-    """Return an id as used by its own behaviour, and the id of the invoke; empty for the outermost machine."""
+    """Return an id without its last `@` part, and that part: the id of the invoke, empty for the machine itself."""
     own, separator, owner = id.rpartition("@")
     return (own, owner) if separator else (id, "")
 

@@ -34,7 +34,10 @@ SNAPSHOT_VERSION = 1
 
 
 def deserialize(machine: MachineDefinition, data: Mapping[str, Any]) -> Snapshot:
-    """Return the snapshot that `serialize` made of this machine; raise SnapshotError if it does not fit."""
+    """Return the snapshot that `serialize` made of this machine.
+
+    Raises SnapshotError if the data is damaged, of another version, or of another or changed machine.
+    """
     try:
         return _snapshot(machine, JsonCursor(data))
     except RecursionError:
@@ -140,7 +143,7 @@ class _SnapshotReader:
         if kind == "at" and event not in compiled(self.machine).chart.nodes[state].schedules:
             raise data["event"].refused(f"is not an `at` of `{state}`")
         to = data["to"].text() if any(key == "to" for key, _ in data.items()) else ""
-        return Timer(data["id"].text(), due, delay, event, content, state, kind, to)  # type: ignore[arg-type]  # one of three
+        return Timer(data["id"].text(), due, delay, event, content, state, kind, to)  # type: ignore[arg-type]  # one of four
 
     def position(self, path: str, data: JsonCursor) -> Within:
         """Read the position of the `do` of an active state."""

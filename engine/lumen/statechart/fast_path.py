@@ -22,7 +22,7 @@ from lumen.statechart.step_writer import StepWriter
 from lumen.statechart.values import Awaiting, Fork, Snapshot, Step, Within
 
 MAX_WAYS = 2
-"""The number of combinations of guards that are generated into one function; with more, each gets its own function."""
+"""The greatest number of combinations of guard results in one function; with more, each gets its own function."""
 
 
 def whole(snapshot: Snapshot, event: Event) -> None:

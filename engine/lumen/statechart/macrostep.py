@@ -21,7 +21,7 @@ def complete(context: ExecutionContext) -> Step:
     """Run the macrostep to its end and return the step.
 
     Invoked behaviours that still run receive the event from outside first. Then the entered states start their
-    invocations and `do`, and at last the events that the machine sent are delivered.
+    invocations and `do`, and finally the events that the machine sent are delivered.
     """
     while True:
         _macrostep(context)

@@ -57,7 +57,7 @@ class PropertyMonitor:
         return inf if self.since is None else self.since + self.definition.within
 
     def elapse(self, now: float) -> Violation | None:
-        """Return the violation of a deadline that has passed at `now` [s] without a step, else None."""
+        """Return the violation if the deadline has passed at `now` [s], and stop waiting; else return None."""
         if self.since is None or nanoseconds(now) <= nanoseconds(self.since) + nanoseconds(self.definition.within):
             return None
         since, self.since = self.since, None

@@ -115,7 +115,7 @@ def checked(name: str, checks: Mapping[str, TypeCheck | None], given: Mapping[st
 
 
 def type_name(value: Any) -> str:
-    """Return the JSON type of a value, in the terms of JSON Schema."""
+    """Return the JSON Schema type of a value, `number` for an integer; its Python type if it is not JSON."""
     return next((name for name, test in _TESTS.items() if name != "integer" and test(value)), type(value).__name__)
 
 
