@@ -38,9 +38,9 @@ _INSTEAD = {
 def function_of(
     node: FunctionCall, around: Declarations, findings: ExpressionFindings
 ) -> Function | OwnFunction | None:
-    """Return the called function; None if there is no function of that name, or its file is broken.
+    """Return the called function; None if it does not exist, its file is broken, or its code can't be imported.
 
-    Report an unknown function and a wrong number of arguments.
+    Report a function that is unknown or can't be imported, and a wrong number of arguments.
     """
     function: Function | OwnFunction | None = all_functions().get(node.function)
     if function is None and node.function in around.functions:

@@ -54,7 +54,7 @@ class JsonSchema:
             return False
         try:
             return self._is_valid(data)
-        except ValueError:  # half a surrogate pair, or a key that is no text
+        except ValueError:  # half a surrogate pair, or a key that is not a string
             return False
 
     def errors(self, data: Any) -> "Iterator[ValidationError]":

@@ -140,13 +140,13 @@ def bounded_text(length: int) -> None:
 
 
 def subtract(left: Any, right: Any) -> Any:
-    """Return the difference of two numbers; raise FaultError if it is out of range."""
+    """Return the difference of two numbers; raise WrongKindError for other kinds, FaultError if it is out of range."""
     _numbers(left, right)
     return _in_range(left - right)
 
 
 def multiply(left: Any, right: Any) -> Any:
-    """Return the product of two numbers; raise FaultError if it is out of range."""
+    """Return the product of two numbers; raise WrongKindError for other kinds, FaultError if it is out of range."""
     _numbers(left, right)
     return _in_range(left * right)
 
@@ -173,7 +173,7 @@ def remainder(left: Any, right: Any) -> Any:
 
 
 def negative(value: Any) -> Any:
-    """Return the number with the opposite sign."""
+    """Return the negated number; raise WrongKindError for other kinds, FaultError if it is out of range."""
     if kind_of(value) != NUMBER:
         raise WrongKindError(0, value, NUMBER)
     return _in_range(-value)
@@ -212,7 +212,7 @@ def has(base: Any, *keys: Any) -> bool:
 
 
 def bounded(value: Any) -> Any:
-    """Return the value; raise FaultError if it has too many values or levels, or too long texts."""
+    """Return the value; raise FaultError if it has too many values, levels or characters."""
     if type(value) in _SCALARS:
         return value
     count, characters, level, values = 0, 0, 0, [value]

@@ -18,7 +18,7 @@ _NO_LISTS: Lists = {}
 
 
 class _ByIdentity:
-    """A cache of values prepared from tables, which keeps the last few hundred.
+    """A cache of values prepared from tables, which is emptied when it is full.
 
     Tables are frozen, so their identity represents their content; the cache keeps each table alive, so that its
     identity is not reused.

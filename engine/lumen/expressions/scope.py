@@ -48,7 +48,7 @@ class Scope(NamedTuple):
     at: float = 0.0
     """The time of the event [s]."""
     language: str = ""
-    """The language in which `lookup` answers."""
+    """The current language, which selects among texts by language."""
     phrases: Mapping[str, Mapping[str, tuple[str, ...]]] = _NOTHING
     answers: Mapping[str, tuple[Answer, ...]] = _NOTHING
     epoch: float = 0.0

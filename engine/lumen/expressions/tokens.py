@@ -72,7 +72,7 @@ def tokenize(source: str) -> list[Token]:
 
 
 def token_at(source: str, offset: int) -> Token:
-    """Return the token (or `blank`) at `offset`."""
+    """Return the token (or `blank`) at `offset`; raise ExpressionError if no token begins there."""
     match = _TOKEN.match(source, offset)
     if match is None or match.lastgroup is None:
         character = source[offset]

@@ -164,7 +164,7 @@ def rebuilt(node: ExpressionNode, change: Callable[[ExpressionNode], ExpressionN
 
 
 def walk(tree: ExpressionNode) -> Iterator[tuple[ExpressionNode, int]]:
-    """Yield every node of the tree with its level; the root's is 1."""
+    """Yield every node of the tree with its level, parents first; the root's level is 1."""
     stack = [(tree, 1)]
     while stack:
         node, level = stack.pop()
