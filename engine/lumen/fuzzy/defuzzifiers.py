@@ -1,4 +1,4 @@
-"""Defuzzify the degrees of an output's conclusions by the cheapest method that is exact."""
+"""Defuzzification of the degrees of an output's conclusions, by the cheapest method that is exact."""
 
 from bisect import bisect_left
 from collections.abc import Iterator, Sequence

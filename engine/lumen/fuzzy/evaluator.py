@@ -34,10 +34,11 @@ class Evaluator:
         ]
 
     def evaluate(self, inputs: Mapping[str, float], previous: Mapping[str, float] | None = None) -> dict[str, float]:
-        """Return the outputs by name, in their own units; those with `lock_previous` keep their value in `previous`.
+        """Return the outputs by name, in their own units.
 
-        They keep it if no rule fires. Raises UsageError for a missing, unknown or NaN input, LumenError if no rule
-        fires for an output without a previous value and a default.
+        An output for which no rule fires has its value in `previous` if `lock_previous` is set, else its default.
+        Raises UsageError if an input is missing, unknown or not a number, LumenError if an output has none of these
+        values.
         """
         values = self._values(inputs)
         tape = self.program.run(values)
@@ -57,7 +58,8 @@ class Evaluator:
     ) -> "dict[str, Array]":
         """Return arrays of outputs, Shape (n,), for inputs of Shape (n,) each; raises the same errors as `evaluate`.
 
-        The rows count as successive evaluations: `previous` is used for the first one.
+        The rows count as successive evaluations: `previous` is used for the first one. Raises UsageError if the inputs
+        have different shapes.
         """
         import numpy as np
 

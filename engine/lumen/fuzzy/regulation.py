@@ -43,7 +43,7 @@ class Signals(NamedTuple):
 NOTHING = Signals()
 
 ROUNDING = 1e-9
-"""The greatest difference of float sums that count as equal."""
+"""The greatest difference between float sums that count as equal."""
 
 
 class Regulator:

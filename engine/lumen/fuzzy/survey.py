@@ -72,7 +72,7 @@ class Survey:
                     yield Slice(output, name, xs, tuple(point[output] for point in said))
 
     def step(self, found: Slice, share: float) -> SurfaceJump | None:
-        """Return the greatest jump by more than that share of the output's range, located by bisection; else None."""
+        """Return the greatest jump, located by bisection, if it exceeds that share of the output's range; else None."""
         output = self.controller.outputs[found.output]
         least = share * (output.maximum - output.minimum)
         gaps = [(abs(b - a), i) for i, (a, b) in enumerate(zip(found.ys, found.ys[1:], strict=False))]
