@@ -21,7 +21,7 @@ from lumen.project.packaged import find_project
 
 
 def check(path: str | Path | None = None) -> list[Diagnostic]:
-    """Return all findings in a project, sorted by file and line; errors in its files raise nothing.
+    """Return all findings in a project, sorted by file and line; errors in its files are findings, not exceptions.
 
     `path` is the project's folder; None is the project around the working directory (`find_project`). Raises UsageError
     if there is no such folder.
@@ -40,7 +40,7 @@ def check_files(
 
     If the project has several robots, the files can choose one of them (`as_robot`); without a choice the findings are
     those of all robots, and the project is that of the first. `between` is called before each rule, so that a caller
-    can stop the check by raising an exception. `looks` records which other paths of the disk were looked at.
+    can stop the check by raising an exception. `looks` records which other paths on disk were examined.
     """
     looks = looks or Looks()
     found, diagnostics = _checked(root, files, between, looks)

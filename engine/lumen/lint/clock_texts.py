@@ -16,7 +16,7 @@ _SHOWN: Mapping[str, tuple[re.Pattern[str], str]] = {
     "weekday": (re.compile(r"mon|tue|wed|thu|fri|sat|sun"), "write a day from `'mon'` to `'sun'`"),
     "date": (re.compile(r"[0-9]{4}-[0-9]{2}-[0-9]{2}"), "write year, month and day, such as `'2026-12-24'`"),
 }
-"""The form of each function's result, and the hint to write it."""
+"""The form of each function's result, and the hint for a text of another form."""
 
 
 _COUNTED: Mapping[str, int] = {"hour": 23, "minute": 59}

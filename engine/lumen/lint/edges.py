@@ -1,4 +1,4 @@
-"""Walks from the robot's start, against the ground of its hall: beyond the edge the robot falls."""
+"""Walks from the robot's start, checked against the ground of its hall: beyond the edge, the robot falls."""
 
 from collections.abc import Generator, Iterable, Iterator, Mapping, Sequence
 from math import cos, hypot, sin
@@ -113,7 +113,7 @@ class _Ways:
     def _begun(
         self, steps: Sequence[PlacedAction], pose: PlaceOnGround | None, made: set[NodePath]
     ) -> Generator[Stray, None, PlaceOnGround | None]:
-        """Follow actions that run without a wait: after a walk among them the position is unknown."""
+        """Follow actions that run without a wait; return the robot's pose, None (unknown) if one of them is a walk."""
         after = yield from self._block(steps, pose, made)
         return None if any(_moves(steps)) else after
 

@@ -161,7 +161,7 @@ class _Examples(HeardRows):
             self.never(row, "every inner state has its own `else`", "delete this `else`, or one of those")
 
     def ends(self, leaf: str, outer: str) -> bool:
-        """Return whether an `else` between two states handles the remaining sentences."""
+        """Return whether an `else` of `leaf`, or of a state between it and `outer`, handles the remaining sentences."""
         return any(
             t.hears and t.hears.way == "else" and not t.guard
             for state in self.between(leaf, outer)

@@ -1,4 +1,4 @@
-"""The stage against the ground below it in the hall: beyond the ground the robot falls."""
+"""The stage, checked against the ground below it in the hall: beyond the ground, the robot falls."""
 
 from collections.abc import Iterable
 

@@ -54,7 +54,7 @@ class _Frame(NamedTuple):
     y: float = 0.0
     z: float = 0.0
     yaw: float | None = 0.0
-    """Unknown (None) if the body is also turned about another axis than the vertical."""
+    """Unknown (None) if the body is also turned about an axis other than the vertical."""
 
 
 def obstacles(content: bytes) -> tuple[Obstacle, ...]:
@@ -139,7 +139,7 @@ def _placed(around: _Frame, said: Mapping[str, str], degrees: bool) -> _Frame:
 def _shape(around: _Frame, said: Mapping[str, str], degrees: bool) -> tuple[Obstacle, float, float] | None:
     """Return the outline of a solid geom, its bottom and its top [m]; None if it has no collisions or an unknown shape.
 
-    A geom that is turned about another axis than the vertical becomes the ball around it. Raises ValueError or
+    A geom that is turned about an axis other than the vertical becomes the ball around it. Raises ValueError or
     IndexError if its numbers are malformed.
     """
     if said.get("contype", "1") == "0" and said.get("conaffinity", "1") == "0":

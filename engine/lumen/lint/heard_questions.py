@@ -78,7 +78,7 @@ class _Questions(HeardRows):
         return guarded or self.asks(row) or self.machine.answers.keys() >= set(row.hears.names)
 
     def asks(self, row: SaidRow) -> bool:
-        """Return whether a row asks the knowledge, or leads to a state that does."""
+        """Return whether a row has an `ask`, or leads to a state that has one."""
         states = (state for t in row.candidates for state in self.entered(t.targets))
         blocks = [*(t.actions for t in row.candidates), *((*state.entry, *state.do) for state in states)]
         return any(_asks(block) for block in blocks)

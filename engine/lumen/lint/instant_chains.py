@@ -69,7 +69,7 @@ class InstantChain:
     taken: list[TakenTransition] = field(default_factory=list)
     """The transitions taken so far."""
     asked: list[tuple[int, str]] = field(default_factory=list)
-    """Guards of `always` that are assumed to be false: the number of transitions taken before it, and its text."""
+    """The guards of `always` assumed to be false: the number of transitions taken before each, and its text."""
     assigned: int = -1
     """The number of transitions taken before the last change of the context; -1 without a change."""
     over: bool = False
@@ -129,7 +129,7 @@ class InstantChain:
                 self._end(state)
 
     def step(self) -> bool:
-        """Take the enabled transitions, or those of the next event; return False if the machine rests, or is over."""
+        """Take the enabled transitions, or those of the next event; return False if the machine rests or has ended."""
         if self.over:
             return False
         waiting = len(self.internal) + len(self.timers)

@@ -141,7 +141,7 @@ class _ModelReader:
             self.read(inner)
 
     def found(self, model: str, element: ModelElement, folder: str, name: str) -> bool:
-        """Return whether a file that an element names is in models/; report it if not."""
+        """Return whether a file that an element names is in models/, True if that is unknown; report a missing one."""
         place = model, element.line, element.column, len(element.name) + 1
         if outside(self.draft, folder, name):
             message = "this refers to a file outside models/, which Lumen does not read"

@@ -20,7 +20,7 @@ DEAD_SLOT = Code("dead-slot", "hearing", WARNING, "a slot of a phrase can never 
 FOREIGN_PATTERN = Code("foreign-pattern", "hearing", WARNING, "a phrase uses the syntax of another tool")
 
 _SIGNS = re.compile(r"[()\[\]{}|<>/\\*^$@%,;\n]")
-"""A phrase without any of these signs has none of the faults reported here."""
+"""A phrase without any of these characters has none of the faults reported here."""
 
 _PATTERN_SIGNS = re.compile(r"[()\[\]{}|]")
 _MIN_PARTS = 3
@@ -63,7 +63,7 @@ _FOREIGN: tuple[tuple[re.Pattern[str], str, str], ...] = (
         "write the words without slashes",
     ),
 )
-"""Signs of other tools, each with a message and a hint."""
+"""The syntax of other tools, each with a message and a hint."""
 
 _SLASH = re.compile(r"(?P<one>[^\W\d]+)\s?/\s?(?P<other>[^\W\d]+)")
 
@@ -154,7 +154,7 @@ def _foreign(phrase: WrittenPhrase) -> None:
 
 
 def _separator(phrase: WrittenPhrase) -> str:
-    """Return the sign that separates alternatives in one text; empty if the text is a single phrase.
+    """Return the character that separates alternatives in one text; empty if the text is a single phrase.
 
     A single comma in an entry of a list may belong to a sentence, because the author already separates phrases by the
     list.

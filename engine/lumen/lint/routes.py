@@ -82,7 +82,7 @@ def _removed(names: Collection[str], report: DocumentReport) -> None:
 
 
 def _password(bus: str, report: DocumentReport) -> None:
-    """Report credentials of the broker in lumen.yaml: a project is copied, mailed and published."""
+    """Report credentials of the broker in lumen.yaml, because a project may be copied, mailed or published."""
     if credentials_of(bus):
         message = "a user name and a password are in a file that others can read"
         hint = "put them into the environment variable LUMEN_BUS, or into a file that LUMEN_BUS_CREDENTIALS names"
@@ -150,7 +150,7 @@ def _meant(route: Route) -> Iterator[str]:
 
 
 def _moves_joints(draft: ProjectDraft, action: object) -> bool:
-    """Return whether an action switches a controller that moves joints; True for an unknown controller."""
+    """Return whether an action switches a controller of joints on or off; True if the controller is unknown."""
     controller = draft.controllers.get(action.controller) if isinstance(action, Track) else None
     return isinstance(action, Track) and not (controller and controller.signals and not controller.output_bindings)
 

@@ -107,7 +107,7 @@ def _field(
 ) -> Mapping[str, Any] | None:
     """Return the schema of the bound field; None if it is unknown.
 
-    Report a field that is no number or has another unit.
+    Report a field that is not a number or has a different unit.
     """
     path = first(report, (*binding.where, "message"), binding.where)
     found = field_schema(draft, report, path, binding.route, binding.path)

@@ -194,7 +194,7 @@ class _Speech:
             self.texts(report, path, {language: text for language, text in texts.items() if language not in parts})
 
     def phrases(self, tables: WordTables) -> None:
-        """Report names of phrases that lack one of the project's languages; those of one language have one cause."""
+        """Report names of phrases that lack one of the project's languages; those lacking the same share a cause."""
         for name, phrases in tables.phrases.items():
             if name in WORD_LISTS:
                 continue
@@ -286,7 +286,7 @@ def _is_rest(report: DocumentReport, path: NodePath) -> bool:
 
 
 def _is_missed(draft: ProjectDraft, language: str) -> bool:
-    """Return whether a text is reported as missing in that language, because that must be solved first."""
+    """Return whether a text is reported as missing in that language, because that must be fixed first."""
     found = (d for report in draft.reports.values() for d in report.diagnostics if d.code == MISSING_LANGUAGE)
     return any(f"`{language}`" in diagnostic.message for diagnostic in found)
 

@@ -1,4 +1,4 @@
-"""Controllers: their outputs over a coarse grid of inputs, against what the file declares."""
+"""Controllers: their outputs over a coarse grid of inputs, checked against what the file declares."""
 
 from collections.abc import Iterator
 from itertools import product
@@ -103,7 +103,7 @@ def _all(
 def _off(controller: ControllerDefinition, slices: list[Slice]) -> dict[str, float]:
     """Return the greatest error of each output with an `accuracy`.
 
-    It is the difference to the value with RESOLUTION_FACTOR times the resolution.
+    It is the difference from the value with RESOLUTION_FACTOR times the resolution.
     """
     exact = {
         n: v for n, v in controller.outputs.items() if v.accuracy is not None and v.defuzzifier in INTEGRAL_DEFUZZIFIERS

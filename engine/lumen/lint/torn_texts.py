@@ -49,7 +49,7 @@ def _cut(report: DocumentReport) -> None:
 
 
 def _torn(report: DocumentReport) -> None:
-    """Report lists of sentences in which one has no final mark and the next one begins with a small letter."""
+    """Report lists of sentences in which one has no final mark and the next one begins with a lowercase letter."""
     lines = lines_of(report.document.text)
     lists: dict[NodePath, list[str]] = {}
     for path in report.document.spans:
@@ -89,7 +89,7 @@ def _mapped(report: DocumentReport) -> None:
 def _parts(texts: list[str], lines: list[int]) -> Iterator[tuple[int, int]]:
     """Yield the first index and the end index of each text that a comma has split; `lines` are the texts' lines.
 
-    Each part but the last has no final mark, and each but the first begins with a small letter in the same line.
+    Each part but the last has no final mark, and each but the first begins with a lowercase letter on the same line.
     """
     first = 0
     for i in range(1, len(texts) + 1):

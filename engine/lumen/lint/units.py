@@ -28,7 +28,7 @@ HALF_TURN_PARTS = frozenset(round(pi / n, digits) for n in (1, 2, 3, 4, 6) for d
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report angles in radians among degrees, head turns and walks beyond limits, and more than one full turn."""
+    """Report angles in radians among degrees, and head turns, walks, walking speeds and full turns beyond limits."""
     for name in draft.motions:
         _radians(draft.report("motions", name), draft.body)
     stage = draft.settings.stage if draft.settings else None

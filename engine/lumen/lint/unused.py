@@ -103,7 +103,7 @@ def _unasked(
 ) -> None:
     """Report phrases, answers and lists of a file whose name is in no expression and no row of `hears`.
 
-    Word lists are exempt. With `hears`, a behaviour that knows the file has rows, and the hints suggest to write one.
+    Word lists are exempt. With `hears`, a behaviour that knows the file has rows, and the hints suggest writing one.
     """
     texts = {text for each in named for text in each.texts}
     lists = None if any(each.lists is None for each in named) else {n for each in named for n in each.lists or ()}

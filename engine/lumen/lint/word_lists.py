@@ -23,7 +23,7 @@ _NEEDED = {
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report once which lists have no words in which language, if a behaviour hears."""
+    """Report, as one finding, the lists that have no words in each language, if a behaviour hears."""
     machines = [machine for machine in draft.behaviors.values() if any(heard_rows(machine))]
     settings, main = draft.settings, draft.main
     if not machines or settings is None or main is None or draft.words.keys() != draft.names["behaviors/words"]:

@@ -33,7 +33,7 @@ class FileText:
         self.lines, self.breaks = lines_and_breaks(self.text)
 
     def line(self, number: int) -> str:
-        """Return the line of this number, from 1; empty for any other number."""
+        """Return the line with that number, counted from 1; empty if there is none."""
         return self.lines[number - 1] if 0 < number <= len(self.lines) else ""
 
     def at(self, place: Place) -> str:

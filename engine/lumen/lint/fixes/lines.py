@@ -10,7 +10,7 @@ _COMMENT = re.compile(r"[ \t]*#[ \t]*lumen:[ \t]*ignore.*")
 
 
 def spaces(diagnostic: Diagnostic, source: FileText) -> list[Fix]:
-    """Return fixes that replace tabs in the indentation by two, four or eight spaces each."""
+    """Return fixes that replace each tab in the indentation with two, four or eight spaces."""
     lines = [(n, m) for n, line in enumerate(source.lines, 1) if (m := TABBED.match(line))]
     return [
         Fix(
@@ -48,7 +48,7 @@ def _said(line: str) -> str:
 
 
 def _deeper(source: FileText, number: int) -> bool:
-    """Return whether the value of a line, which counts from 1, continues below it."""
+    """Return whether the value on line `number`, counted from 1, continues below it."""
 
     def depth(line: str) -> int:
         return len(line) - len(line.lstrip())
