@@ -35,8 +35,8 @@ def block_changes(
 ) -> Iterator[Change]:
     """Yield the changes between two versions of a block of actions.
 
-    `title` names the owner of the block, `when` is when it runs (` on entering`, or empty). Each change has in `where`
-    the path of the new action, or of the old one if the action was removed.
+    `title` names the owner of the block, `when` says when it runs (` on entering`, or empty). Each change has in
+    `where` the path of the new action, or of the old one if the action was removed.
     """
     places = {id(step.action): step.where for step in (*old, *new)}
     for one, other in paired([s.action for s in old], [s.action for s in new], lambda action: type(action).__name__):

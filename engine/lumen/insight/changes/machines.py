@@ -46,7 +46,7 @@ class _Comparison:
     def presence(self) -> Iterator[Change]:
         """Yield the states that were removed, added, renamed or moved.
 
-        Of nested removed or added states only the outermost are included.
+        Of nested removed or added states, only the outermost are included.
         """
         known = set(self.images.values())
         gone = {path: None for path, image in self.images.items() if image is None}
@@ -61,7 +61,7 @@ class _Comparison:
                 yield self.change("state", path, sentence)
 
     def outermost(self, machine: MachineDefinition, paths: Collection[str], how: str) -> Iterator[Change]:
-        """Yield a change for each of these states that is not inside another one, with the number inside it."""
+        """Yield a change for each of these states that is not inside another, with the number of those inside it."""
         within = Counter(around for path in paths for around in _around(path) if around in paths)
         for path in paths:
             if machine.states[path].parent not in paths:

@@ -113,7 +113,7 @@ def _file_of_movement(change: Change, project: Project) -> str:
 
 
 def _manifests(project: Project) -> dict[str, VerbRow]:
-    """Return the verbs that a project's files declare, without folder and robot, which have no meaning for them."""
+    """Return the verbs that a project's files declare, without the folder and the robot, which no file declares."""
     return {name: row._replace(root="", robot="") for name, row in project.verbs.items()}
 
 

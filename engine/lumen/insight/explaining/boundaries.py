@@ -22,7 +22,7 @@ ValuePath = tuple[str, ...]
 ABSENT = object()
 """Returned for a path that does not exist."""
 MAX_VALUES = 24
-"""The most values that are tried for one path."""
+"""The greatest number of values that are tried for one path."""
 FIRST = 6
 """The number of values mentioned in the guard that come before plain ones, because there may be very many."""
 

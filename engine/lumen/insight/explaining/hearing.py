@@ -12,7 +12,7 @@ from lumen.talk.hearing import Dropped, hearing_of, said_in
 RowFate = Literal["taken", "not found", "guard", "better row"] | Dropped
 """Whether a row is taken, and if not, why. `taken` is the best row of its state, even if another state has priority."""
 MAX_QUOTED = 80
-"""Characters of a sentence that are shown."""
+"""The greatest number of characters of a sentence that are shown."""
 
 
 class HeardRow(NamedTuple):

@@ -17,7 +17,7 @@ from lumen.statechart.stepping import step
 from lumen.statechart.values import Snapshot, Step
 
 MAX_NAMED_STATES = 3
-"""The most states that a refusal names as those in which a button works."""
+"""The greatest number of states that a refusal names as those in which a button works."""
 
 
 class ShownButton(NamedTuple):
@@ -49,7 +49,7 @@ def shown_buttons(machine: MachineDefinition, snapshot: Snapshot, at: float) -> 
 
 
 def pressed(machine: MachineDefinition, snapshot: Snapshot, label: str, at: float, by: str) -> Event | str:
-    """Return the event of pressing the button with a label, in any language; a message if it can't be pressed."""
+    """Return the event that the button with that label, in any language, raises; a message if it can't be pressed."""
     shown = shown_buttons(machine, snapshot, at)
     found = sorted((one for one in shown if one.button.named(label)), key=lambda one: not one.enabled)
     if not found:

@@ -27,7 +27,7 @@ from lumen.talk.sample_sentences import of_row
 Because = Literal["inactive", "no-event", "preempted", "unheard", "guard"]
 ORDER: tuple[Because, ...] = ("guard", "unheard", "preempted", "no-event", "inactive")
 MAX_SAMPLES = 40
-"""The most samples of an event's data that are tried."""
+"""The greatest number of samples of an event's data that are tried."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -22,12 +22,12 @@ from lumen.talk.hearing import said_in
 from lumen.talk.sample_sentences import of_row
 
 MAX_TRIED = 40
-"""The most steps that are taken to find a change."""
+"""The greatest number of steps that are taken to find a change."""
 MAX_EDITS = 1_000
-"""The most sets of values with which a guard is evaluated."""
+"""The greatest number of sets of values with which a guard is evaluated."""
 
 MAX_SAID = 24
-"""The most sentences that are tried for a row of `hears`."""
+"""The greatest number of sentences that are tried for a row of `hears`."""
 _SAID = ("event", "data", "result")
 
 Happens = Callable[[StepSituation], bool]
@@ -61,7 +61,7 @@ def smallest_change(
     from_: StepSituation,
     happens: Happens,
 ) -> ProposedChange | None:
-    """Return the change with the fewest edits after which `happens` is true; None if none of those tried was.
+    """Return the change with the fewest edits after which `happens` is true; None if no such change was found.
 
     `others` are the transitions that precede `wanted`; their guards may have to become false.
     """

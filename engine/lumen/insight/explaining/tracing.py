@@ -45,7 +45,7 @@ class Moment(NamedTuple):
 
     @property
     def candidates(self) -> Candidates:
-        """The transitions that were considered, innermost first for each active atomic state; later ones apart."""
+        """The transitions that were considered, innermost first for each active atomic state; `later` has late rows."""
         if self.eventless or self.event is None:
             return self.configuration.eventless
         if timed := self.configuration.timed(self.event.name):

@@ -60,9 +60,9 @@ def explore(
     """Explore the configurations that can be reached, and expand up to `bound` of them.
 
     `events` are those that may come from outside, each with the JSON Schema of its data. `home` is the name of the
-    state that must stay reachable; if it is empty, each innermost state of the beginning must. A configuration beyond
-    the bound may lead anywhere, so no finding depends on one. `progress` is called with the numbers of configurations
-    that were expanded and that wait.
+    state that must stay reachable; if it is empty, each innermost state active at the beginning must. A configuration
+    beyond the bound may lead anywhere, so no finding depends on one. `progress` is called with the numbers of
+    configurations that were expanded and that wait.
     """
     search = StateSpaceSearch(machine, events, language=language, epoch=epoch, timezone=timezone)
     for expanded in search.expand(bound):

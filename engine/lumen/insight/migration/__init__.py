@@ -1,7 +1,7 @@
 """The migration of a running behaviour to other files: a pure plan, a reason to wait, or a refusal.
 
-`verdicts` has the three results, `identity` maps states, `placing` decides which states stay and where the others lead,
-`situation` whether a `do` under way can continue, and `carried_state` translates context, timers and history.
+`verdicts` has the three results, `placing` maps states and decides which stay and where the others lead, `situation`
+decides whether a `do` under way can continue, and `carried_state` translates context, timers and history.
 """
 
 from lumen.insight.migration.migrating import migrated

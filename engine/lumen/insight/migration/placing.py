@@ -86,7 +86,7 @@ class Unplaced(NamedTuple):
     gone: StateNode
     """The innermost old state that has no place."""
     rivals: tuple[StateNode, ...] = ()
-    """Active children that can no longer be active together; empty if there is one at most."""
+    """Active children that can no longer be active together; empty if there is at most one."""
 
 
 def place(new: Chart, active: frozenset[StateNode], identity: Identity, history: History) -> Placement | Unplaced:
@@ -145,7 +145,7 @@ class _Placing:
     def unplaced(self) -> StateNode | None:
         """Return a compound state that lacks a single active child and can't enter its initial state; else None.
 
-        Of several it is the outermost.
+        If there are several, it is the outermost.
         """
         standing = self.standing()
         begins = {self.kept[leaf] for leaf in _leaves(self.active) if leaf in self.kept} | set(self.goals)

@@ -1,4 +1,4 @@
-"""The extent of a visit: from the step by which the behaviour leaves its home to the one by which it is back.
+"""The extent of a visit: from the step by which the behaviour leaves its home to the one by which it returns.
 
 Home is the innermost state in which a behaviour begins; with regions, that of the first one in the order of the file.
 `lumen test --explore` looks for a way back to the same state.
