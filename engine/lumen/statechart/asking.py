@@ -1,4 +1,4 @@
-"""Questions of visitors and their answers: names are removed from questions, and control signs from answers."""
+"""Questions of visitors and their answers: names are removed from questions, and control characters from answers."""
 
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any, NamedTuple
@@ -19,7 +19,7 @@ MAX_SENTENCES = 5
 MAX_NAME = 60
 """The greatest length of a text that may be a name [characters]."""
 MARKUP = str.maketrans(dict.fromkeys("\\^<>{}[]|`*_#~\n\r\t", " "))
-"""Signs that a voice may interpret as commands, such as NAOqi's `^start(…)` and `\\rspd=…\\`; each becomes a blank."""
+"""Characters that a voice may take for commands, such as NAOqi's `^start(…)` and `\\rspd=…\\`; each becomes a space."""
 
 
 class Sentence(NamedTuple):
@@ -63,7 +63,7 @@ def unnamed(text: str, context: Mapping[str, Any]) -> str:
 def sentence_of(data: Any) -> Sentence | None:
     """Return the sentence in the data of an `answer` event, None if the data is malformed.
 
-    The text is never used as a template, and signs that a voice may interpret as commands are replaced by blanks.
+    The text is never used as a template, and characters that a voice may interpret as commands become spaces.
     """
     if not isinstance(data, Mapping):
         return None

@@ -1,4 +1,4 @@
-"""Enters a state on request of a person, as a transition from the current configuration would."""
+"""Enters a state at a person's request, as a transition from the current configuration would."""
 
 from collections.abc import Iterator
 
@@ -36,7 +36,7 @@ def entered_directly(machine: MachineDefinition, snapshot: Snapshot, name: str, 
 
 
 def _way(target: StateNode, standing: Configuration) -> tuple[StateNode, tuple[StateNode, ...]]:
-    """Return source and targets of a transition from the innermost active ancestor, which leaves nothing else."""
+    """Return the source and targets of a transition from the innermost active ancestor, which leaves nothing else."""
     assert target.parent is not None  # only the document has no parent, and it has no name
     if target.parent.kind is StateKind.PARALLEL and target in standing.nodes and target.initial:
         return target, target.initial

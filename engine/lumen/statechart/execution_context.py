@@ -103,7 +103,7 @@ class ExecutionContext:
     cached_scope: Scope | None = None
     internal_queue: deque[Event] | tuple[()] = ()
     unforwarded: Event | None = None
-    """An event from outside that was not delivered to the invoked behaviours yet."""
+    """An event from outside that has not been delivered to the invoked behaviours yet."""
     beginnings: tuple[Beginning, ...] = ()
     """The states entered and not left again, with what to begin for them."""
     is_invoked: bool = False
@@ -113,7 +113,7 @@ class ExecutionContext:
     """Events for invoked behaviours and other robots, each with its recipient."""
     microsteps: int = 0
     failed: frozenset[NodePath] = frozenset()
-    """The places at which an error was raised so far."""
+    """The places at which an error has been raised so far."""
     output: Any = None
     commands: tuple[Command, ...] = ()
     exited: tuple[str, ...] = ()

@@ -24,7 +24,7 @@ class Timer(NamedTuple):
     event: str
     data: Any = None
     state: str = ""
-    """The path of the state with whose exit an `after`, `at` or `wait` is cancelled; empty for a `send`."""
+    """The path of the state whose exit cancels the timer of an `after`, `at` or `wait`; empty for a `send`."""
     kind: Literal["after", "at", "send", "wait"] = "send"
     to: str = ""
     """The other behaviour that receives a `send`; empty for the machine itself."""
@@ -88,7 +88,7 @@ class Halted(NamedTuple):
 
 
 class Counters(NamedTuple):
-    """The numbers of ids assigned: `c1, c2, …` to commands, `d1, d2, …` to awaited ones, `s1, w2, …` to timers."""
+    """How many ids have been assigned: `c1`, `c2`, … to commands, `d1`, … to awaited ones, `s1`, `w2`, … to timers."""
 
     commands: int = 0
     awaited: int = 0
