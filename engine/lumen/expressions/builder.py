@@ -120,7 +120,7 @@ class CodeBuilder:
         return ast.NamedExpr(ast.Name(name, ast.Store()), value), _load(name)
 
     def hidden(self, node: ExpressionNode) -> ast.expr:
-        """Return the Python node, hidden from Python's constant check, which would warn of `1['a']` and `1 is None`."""
+        """Return the Python node, hidden from Python's constant check, which warns about `1['a']` and `1 is None`."""
         built = self.node(node)
         return (
             built if isinstance(node, Identifier | FieldAccess | IndexAccess | FunctionCall) else self.named(built)[0]
@@ -199,7 +199,7 @@ class CodeBuilder:
         return self.call(OPERATOR_FUNCTIONS[sign], self.node(left), self.node(right))
 
     def equals_literal(self, sign: str, left: ExpressionNode, right: Literal) -> ast.expr:
-        """Return `left == literal` without a call; 0 and 1 need one, because in Python they equal booleans."""
+        """Return the node of `left == literal`, without a call except for 0 and 1, which equal booleans in Python."""
         identity = right.value is None or isinstance(right.value, bool)
         negated = sign == "!="
         if not identity and right.value in (0, 1):
@@ -212,14 +212,14 @@ class CodeBuilder:
         return ast.Compare(self.hidden(left), [operator], [self.node(right)])
 
     def compares_number(self, sign: str, left: ExpressionNode, right: Literal) -> ast.expr:
-        """Return `left < number`: direct if `left` is a number, with all checks otherwise."""
+        """Return the node of `left < number`: direct if `left` is a number, with all checks otherwise."""
         value, again = self.named(self.node(left))
         is_number = ast.Compare(self.call("type", value), [ast.In()], [_load("numbers")])
         fast = ast.Compare(again, [_ORDER[sign]()], [ast.Constant(right.value)])
         return ast.IfExp(is_number, fast, self.call(OPERATOR_FUNCTIONS[sign], again, ast.Constant(right.value)))
 
     def adds_number(self, sign: str, left: ExpressionNode, right: Literal) -> ast.expr:
-        """Return `left + number`: direct if both are integers and the sum is in range, with all checks otherwise."""
+        """Return the node of `left + number`: direct if both are integers with a sum in range, else with all checks."""
         value, again = self.named(self.node(left))
         total, sum_ = self.named(ast.BinOp(again, _SHIFT[sign](), ast.Constant(right.value)))
         is_whole = ast.Compare(self.call("type", value), [ast.Is()], [_load("whole")])

@@ -51,7 +51,7 @@ class ExpressionFinding(NamedTuple):
 CODES_OF_COMPILE_ERRORS = frozenset(
     (UNKNOWN_NAME, UNKNOWN_FUNCTION, WRONG_ARGUMENT_COUNT, UNSAFE_PATTERN, WRONG_ARGUMENT)
 )
-"""The codes of expressions that cannot be compiled."""
+"""The codes of findings that keep an expression from being compiled."""
 
 
 @dataclass(frozen=True)

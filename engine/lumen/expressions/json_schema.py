@@ -144,7 +144,7 @@ def is_usable_alone(schema: object) -> TypeGuard[dict[str, Any]]:
 
 
 def keywords(schema: Any) -> Iterator[str]:
-    """Iterate over all keywords in a schema."""
+    """Yield all keywords in a schema, including those of nested schemas."""
     for keyword, inner in schema.items() if isinstance(schema, dict) else ():
         yield keyword
         named = isinstance(inner, dict) and keyword in _NAMED

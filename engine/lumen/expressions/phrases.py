@@ -51,7 +51,7 @@ _entries = _ByIdentity()
 
 
 def _prepared(phrases: Mapping[str, tuple[str, ...]]) -> tuple[str, ...]:
-    """Return the forms without slots, with a space around them."""
+    """Return the forms without slots, each with a space before and after it."""
     found = (form for texts in phrases.values() for text in texts for form in forms(text) if form.plain)
     return tuple({f" {' '.join(form.literals)} ": None for form in found})
 

@@ -45,7 +45,7 @@ def _roots(source: str) -> frozenset[str]:
 
 
 def substituted_template(text: str, variables: Mapping[str, str]) -> str:
-    """Return the template with `substituted` applied to each of its holes; unchanged if the template is invalid."""
+    """Return the template with `substituted` applied to each placeholder; unchanged if the template is invalid."""
     try:
         parts = split_template(text)
     except ExpressionError:

@@ -40,7 +40,7 @@ class Token(NamedTuple):
     """A token of an expression."""
 
     kind: str
-    """One of int, float, text, name, sign and end."""
+    """One of `int`, `float`, `text`, `name`, `sign` and `end`; `token_at` also returns `blank`."""
     text: str
     """The source of the token."""
     offset: int

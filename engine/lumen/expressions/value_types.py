@@ -87,7 +87,7 @@ def type_of_schema(schema: object) -> ValueType:
 
 
 def type_of_values(values: Iterable[Any]) -> ValueType:
-    """Return the type of a value that is one of these."""
+    """Return the type of a value that is one of these; ANY if one of them is not JSON data."""
     try:
         return of(*(kind_of(value) for value in values))
     except FaultError:
@@ -95,7 +95,7 @@ def type_of_values(values: Iterable[Any]) -> ValueType:
 
 
 def schema_of(value: Any) -> dict[str, Any]:
-    """Return the JSON Schema of a context key that begins with `value` and keeps its type."""
+    """Return the JSON Schema of a context key that begins with `value`, which must be JSON data, and keeps its type."""
     names = {NULL: "null", BOOLEAN: "boolean", NUMBER: "number", TEXT: "string", LIST: "array", MAP: "object"}
     return {"type": names[kind_of(value)]}
 
