@@ -1,6 +1,6 @@
 """Activation methods: they select the rules of a block that are applied, and change their degrees.
 
-Each method receives the rules' degrees in order and returns them, with NaN for a rule that is not applied. It is not 0,
+Each method receives the rules' degrees in order and returns them, with NaN for a rule that is not applied: not 0,
 because a consequent such as `not Near` turns 0 into another degree.
 """
 

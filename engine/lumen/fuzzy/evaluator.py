@@ -172,5 +172,5 @@ def _fallback(variable: Variable, inputs: Mapping[str, float], previous: Mapping
 def infer(
     controller: ControllerDefinition, inputs: Mapping[str, float], previous: Mapping[str, float] | None = None
 ) -> dict[str, float]:
-    """Return the outputs of a controller once; for repeated evaluations keep an `Evaluator`, which is compiled."""
+    """Return the outputs of a controller, compiled for this one evaluation; for several, keep an `Evaluator`."""
     return Evaluator(controller).evaluate(inputs, previous)

@@ -1,7 +1,7 @@
 """Formulas of `function` terms: Lumen's expressions over real numbers.
 
 `x` and the names of variables are numbers, `/` is a division of reals, and a comparison counts as 1 or 0. A formula has
-no value (NaN) if one of its parts has no value or an infinite one, as after a division by zero or a root of -1.
+no value (NaN) if one of its parts has no value or an infinite one, as after a division by zero or a square root of -1.
 """
 
 import math

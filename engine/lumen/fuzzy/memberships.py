@@ -1,7 +1,7 @@
 """Membership functions: for each kind of term its formula, prepared once for its parameters.
 
 The shapes and their edges are FuzzyLite's (Rada-Vilela, fuzzylite.com), with every vertical edge allowed. A prepared
-function accepts x (a float or an array, depending on its arithmetic) and returns the membership before scaling with the
+function accepts x (a float or an array, depending on its arithmetic) and returns the membership before scaling by the
 term's height.
 """
 
