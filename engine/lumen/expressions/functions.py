@@ -139,7 +139,10 @@ def _unnamed(what: str, name: str, names: Iterable[str]) -> FaultError:
 
 
 def caught(scope: Scope, row: int) -> dict[str, Any]:
-    """Return the value of `heard` in the guard and actions of the row of `hears` with that number."""
+    """Return the value of `heard` in the guard and actions of the row of `hears` with that number.
+
+    Raises FaultError if the scope has no machine.
+    """
     if scope.machine is None:
         raise FaultError("`heard` has no value here", "`heard` is defined in the guard and actions of a row of `hears`")
     return hearing_of(scope.machine).caught(row, scope.event, scope.context, scope.language)

@@ -183,7 +183,7 @@ def _pattern_properties(
 
 
 def _additional_properties(validator: Any, wanted: Any, data: Any, schema: Any) -> "Iterator[ValidationError]":
-    """Apply the check of jsonschema to the keys that match no pattern."""
+    """Yield the errors that jsonschema finds in the keys that match no pattern."""
     from jsonschema import Draft202012Validator
 
     patterns = schema.get("patternProperties", ())

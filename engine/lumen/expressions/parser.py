@@ -77,7 +77,7 @@ class _ExpressionParser(PrattParser):
         return Literal(value, offset=offset, end=token.end)
 
     def map_key(self, entries: Collection[str]) -> str:
-        """Parse the key of a map entry, which must be a text that is not in `entries`."""
+        """Parse the key of a map entry; raise ExpressionError unless it is a text that is not in `entries`."""
         key = self.token
         if key.kind != "text":
             raise self.unexpected(f"put the key in quotes: '{key.text}'" if key.kind == "name" else "")

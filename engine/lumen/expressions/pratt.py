@@ -39,7 +39,10 @@ Infix = tuple[int, Callable[[Any, ExpressionNode, Token, int], ExpressionNode]]
 
 
 class PrattParser(ABC):
-    """One pass over tokens, the last of kind `end`; `token` is the next one."""
+    """One pass over tokens, the last of kind `end`; `token` is the next one.
+
+    Methods raise the errors of `unexpected` and `too_deep`.
+    """
 
     prefixes: ClassVar[Mapping[str, Prefix]]
     operands: ClassVar[Mapping[str, Callable[[Any], ExpressionNode]]]

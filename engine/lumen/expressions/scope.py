@@ -31,7 +31,7 @@ def _nowhere(state: str) -> bool:
 
 
 def no_draw(count: int) -> int:
-    """Raise FaultError: this is the `draw` of a scope for anything but actions, which alone advance the generator."""
+    """Raise FaultError: the default for `draw`, because only actions advance the random generator."""
     raise FaultError("random values are not allowed here", "use `shuffle` and `pick` only in `assign`")
 
 

@@ -81,7 +81,10 @@ def split_template(text: str) -> list[str | Placeholder]:
 
 
 def _closing(text: str, offset: int) -> int:
-    """Return the offset of the `}}` that ends the placeholder, outside of maps and texts."""
+    """Return the offset of the `}}` that ends the placeholder, outside of maps and texts.
+
+    Raises ExpressionError if there is none.
+    """
     start, level = offset - 2, 0
     while offset < len(text):
         if level == 0 and text.startswith("}}", offset):

@@ -38,7 +38,7 @@ def check(draft: ProjectDraft) -> None:
 
 
 def _walks(machine: MachineDefinition, report: DocumentReport) -> None:
-    """Report states that walk and can't be left after an error or a delay: a visitor in the way could stop it."""
+    """Report states that walk and can't be left after an error or a delay: the robot stays there if the walk fails."""
     led: dict[str | None, bool] = {None: False}
     """Whether a transition leads on from a state, or from a state around it."""
     for path, state in machine.states.items():  # a parent comes before its children

@@ -155,7 +155,7 @@ def covers(earlier: Transition, later: Transition) -> bool:
 
 
 def _takes_all(earlier: Transition, later: Transition, machine: MachineDefinition, report: DocumentReport) -> bool:
-    """Report a transition that an earlier one makes partly or wholly unreachable; return whether it is wholly so."""
+    """Report a transition that an earlier one makes partly or wholly unreachable; return True if it is wholly so."""
     related = [(earlier.where, "the earlier one is here")]
     if earlier.guard is None:
         if report.broken(earlier.where):  # the part that could not be read may have been its guard

@@ -16,7 +16,7 @@ from lumen.project.project_folders import MAIN_FILE
 from lumen.project.yaml_reader import parse
 
 NEW_KEYS: Mapping[str, str] = {alias: DEFAULT_KEYS[name] for name, alias in DEFAULT_ALIASES.items()}
-"""The present keys by those of 2015."""
+"""The present keys, by the keys of 2015 that they replace."""
 
 
 def with_robot_keys(files: Mapping[str, bytes]) -> tuple[dict[str, bytes], list[Rewriting]]:
@@ -33,7 +33,7 @@ def with_robot_keys(files: Mapping[str, bytes]) -> tuple[dict[str, bytes], list[
 
 
 def old_keys(files: Mapping[str, bytes]) -> dict[str, str]:
-    """Return the keys of 2015 that routes of a project without an alias have, by the names of the routes.
+    """Return the keys of 2015 that a project's routes have without an alias, by the names of the routes.
 
     Raises UsageError if lumen.yaml can't be read.
     """

@@ -177,7 +177,7 @@ class Advance:
     def branch(
         self, action: CompiledAction, position: Position | None, id: str, said: Sentence | None
     ) -> Position | None:
-        """Continue one of several parallel branches if it awaits `id`; return its position."""
+        """Continue one of several parallel branches if it awaits `id`; return its position, None if it has ended."""
         if position is None or id not in awaited(position):
             return position
         return self.resume(action, position, id, said)
@@ -185,7 +185,10 @@ class Advance:
     def question(
         self, action: AskedQuestion, stands: QuestionPosition, id: str, said: Sentence | None
     ) -> Position | None:
-        """Handle a sentence of an answer, the end of an answer, its deadline, or the end of a spoken sentence."""
+        """Handle a sentence of an answer, the end of an answer, its deadline, or the end of a spoken sentence.
+
+        Return the new position; None if the question has ended.
+        """
         if said and said.raises:
             if not self.context.offers(said.raises):
                 return stands.fork()
@@ -208,7 +211,7 @@ class Advance:
         return stands.without(id).fork()
 
     def complete(self, stands: QuestionPosition) -> QuestionPosition:
-        """Cancel the deadline of a question whose answer is complete; only its speech is still awaited."""
+        """Cancel the deadline of a question whose answer is complete; return the position, which awaits only speech."""
         cancel(self.context, list(awaited(stands.deadline)))
         return stands._replace(deadline=None)
 

@@ -58,7 +58,7 @@ def _snapshot(machine: MachineDefinition, data: JsonCursor) -> Snapshot:
 
 
 class _SnapshotReader:
-    """Reads the parts of a snapshot, given the active states of the machine."""
+    """Reads the parts of a snapshot, given the active states; raises SnapshotError for a part that does not fit."""
 
     def __init__(self, machine: MachineDefinition, configuration: JsonCursor) -> None:
         self.machine = machine

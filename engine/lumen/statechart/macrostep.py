@@ -6,13 +6,13 @@ from lumen.statechart.values import Step
 
 
 def enter_machine(context: ExecutionContext) -> Step:
-    """Enter the initial states and run the first macrostep (`interpret`)."""
+    """Enter the initial states, run the first macrostep (`interpret`), and return the step."""
     microstep(context, context.machine.planner.beginning())
     return complete(context)
 
 
 def exit_machine(context: ExecutionContext) -> Step:
-    """Exit every state of a machine that ends; events raised by it are ignored (`exitInterpreter`)."""
+    """Exit every state of a machine that ends, and return the step; its events are ignored (`exitInterpreter`)."""
     microstep(context, context.machine.planner.end(context.configuration))
     return context.step()
 

@@ -76,7 +76,10 @@ class Certain:
 
 
 class ActionText(StepText):
-    """A step being written, with the actions that it executes and the Step that it returns."""
+    """A step being written, with the actions that it executes and the Step that it returns.
+
+    Methods raise NotPlainError for anything that is not supported, or if the text becomes too long.
+    """
 
     def __init__(self, chart: Chart, start: Configuration) -> None:
         super().__init__(chart.definition)

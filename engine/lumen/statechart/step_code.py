@@ -41,7 +41,10 @@ def leave(
     doing: Positions,
     halted: Mapping[str, Halted],
 ) -> tuple[tuple[Timer, ...], tuple[Command, ...], Positions, Mapping[str, Halted]]:
-    """End the `do` of a state that is left; if the state has a `resume`, store the position."""
+    """End the `do` of a state that is left; if the state has a `resume`, store the position.
+
+    Return the timers, commands, positions and stored positions afterwards.
+    """
     position = doing[node.path]
     if resumption_of(node):
         halted = {**halted, node.path: Halted(position, at)}

@@ -30,7 +30,7 @@ DoPlace: TypeAlias = tuple[str, tuple[PlacedAction, ...], int]
 
 
 class StepWriter(ActionText):
-    """Writes one function.
+    """Writes one function; a branch that raises NotPlainError ends in `return None`.
 
     If `apart` is given, it provides a separate function for each set of transitions that is enabled first.
     """
@@ -46,11 +46,11 @@ class StepWriter(ActionText):
         return self.written(self.select(candidates))
 
     def taken(self, enabled: Enabled) -> WrittenStep | None:
-        """Return the function that takes these transitions."""
+        """Return the function that takes these transitions; None if no branch of it can be written."""
         return self.written(partial(self.take, enabled))
 
     def elapsed(self, event: str) -> WrittenStep | None:
-        """Return the function for the end of the timer of an `after`."""
+        """Return the function for the end of the timer of an `after`; None if no branch of it can be written."""
         self.sendid = "event[0]"
         self.line("timers = without_ended(timers, event)")
         return self.heard(self.start.timed(event))

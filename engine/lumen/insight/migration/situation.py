@@ -117,7 +117,10 @@ class Situation:
         )
 
     def busy(self) -> MigrationDelay | None:
-        """Return a delay for the first removed state whose `do` is under way: the `do` may lead to another state."""
+        """Return a delay for the first removed state whose `do` is under way; None if there is none.
+
+        Such a `do` may still lead to another state.
+        """
         gone = [node for node in self.start.ordered if node.path and self.identity.state(node.path) is None]
         return next((_gone(node) for node in gone if node.path in self.snapshot.doing), None)
 
