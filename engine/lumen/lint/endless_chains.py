@@ -15,10 +15,10 @@ ENDLESS_CHAIN = Code("endless-chain", "statecharts", WARNING, "transitions loop 
 
 
 MAX_STEPS_TO_REST = 20
-"""The number of steps within which a machine must rest after it enters a state; else the state counts as left."""
+"""The greatest number of steps that are followed from the entry of a state to a rest; else it counts as left."""
 
 MAX_SHOWN_TRANSITIONS = 6
-"""The number of transitions of a chain that its message names."""
+"""The greatest number of transitions of a chain that its message names."""
 
 
 def check(draft: ProjectDraft) -> None:

@@ -33,7 +33,7 @@ EVENTS_PER_WORK = 100
 """The number of waiting events copied that count as one visit."""
 
 MAX_INVOKED = 4
-"""The depth of invoked behaviours that are followed."""
+"""The greatest depth to which invoked behaviours are followed."""
 
 _INSTANT = (Assign, CancelSend, If, LogText, Parallel, PublishBody, Raise, Send, Wait)
 

@@ -29,7 +29,7 @@ _SAME_BEGINNING = 3
 """The number of equal letters at the beginning of two words that counts as two forms of one: "dance, dancing"."""
 
 _MAX_TORN = 10
-"""The number of phrases before and after one in which the rest of a torn pattern is searched for."""
+"""The greatest number of phrases before and after one that are searched for the rest of a torn pattern."""
 
 _FOREIGN: tuple[tuple[re.Pattern[str], str, str], ...] = (
     (

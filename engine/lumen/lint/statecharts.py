@@ -18,7 +18,7 @@ MAX_ALWAYS_LOOP = 3
 """The greatest number of transitions in a loop of guarded `always` that is searched for."""
 
 MAX_FOLLOWED_ALWAYS = 4
-"""The number of guarded `always` of one state that are followed."""
+"""The greatest number of guarded `always` of one state that are followed."""
 
 _LEADS = frozenset(("on", "hears", "always", "after", "at", "onDone", "onError", "onReload", "target", "initial"))
 """Keys whose values name states; an unreadable value of one may have named any state."""

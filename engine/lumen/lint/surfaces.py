@@ -26,13 +26,13 @@ STEP_SHARE, TURN_SHARE, REST_SHARE = 0.1, 0.02, 0.02
 """Shares of an output's range: the least step and reversal to report, and the greatest value that counts as 0."""
 
 MIN_RANGE_SHARE = 0.2
-"""The share of the declared range that an output should use at least."""
+"""The least share of the declared range that an output should use."""
 
 RESOLUTION_FACTOR = 4
 """The factor by which the resolution is raised to estimate the error of the original resolution."""
 
 CORNERS = 5, 400
-"""The number of points in each input's range, and the greatest number of their combinations."""
+"""The greatest number of points in each input's range, and of their combinations."""
 
 
 class SurfaceSamples(NamedTuple):

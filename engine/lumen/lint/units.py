@@ -18,7 +18,7 @@ WRONG_UNIT = Code("wrong-unit", "robot", WARNING, "an angle or a length is not i
 
 
 MAX_WALK_DISTANCE = 20.0
-"""The longest walk at an exhibition [m]."""
+"""The longest plausible walk in a hall without a `stage` [m]."""
 
 SPEED_TOLERANCE = 1.05
 """The factor by which a speed may exceed the limit, because people round."""

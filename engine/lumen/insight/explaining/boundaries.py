@@ -24,7 +24,7 @@ ABSENT = object()
 MAX_VALUES = 24
 """The greatest number of values that are tried for one path."""
 FIRST = 6
-"""The number of values mentioned in the guard that come before plain ones, because there may be very many."""
+"""The greatest number of values mentioned in the guard that come before plain ones, as there may be very many."""
 
 
 def boundaries(machine: MachineDefinition, sources: Iterable[str], scope: Scope) -> dict[ValuePath, list[Any]]:

@@ -15,7 +15,7 @@ from lumen.language.numbers import is_number
 from lumen.statechart import Awaiting, Fork, Invoked, Position, Snapshot, Within
 
 MAX_ITEMS_COMPARED = 4
-"""The number of items of a list or map in the context that are compared; the others are ignored."""
+"""The greatest number of items of a list or map in the context that are compared; the others are ignored."""
 
 ConfigurationKey = tuple[Any, ...]
 """The hashable key of a configuration."""
