@@ -1,4 +1,4 @@
-"""An exhibition's current activity: since when each state is active, what is said, moved, heard, and under way."""
+"""An exhibition's current activity: when each state became active, what the robot says and does, and what it heard."""
 
 import re
 from collections import deque
@@ -21,7 +21,7 @@ from lumen.statechart.nesting import active_names, entered_names
 _OWN = re.compile(r"(.*\.)?[cd]\d+(@.*)?")
 """The id of a command of the behaviour, also with the suffix it has between processes."""
 MAX_UNDER_WAY = 200
-"""The number of unfinished commands of a kind that are remembered; one more makes the oldest be forgotten."""
+"""The number of unfinished commands of a kind that are remembered; if there are more, the oldest are forgotten."""
 
 
 class UnderWay(NamedTuple):
@@ -50,8 +50,8 @@ class Spoken(NamedTuple):
 class ActivityTracker(Observer):
     """An observer that records the current activity.
 
-    `project`, `snapshot` and `now` return the bundle, the snapshot, and the time [s]. A command that waits for another
-    of its kind counts from the end of that one.
+    `project`, `snapshot` and `now` return the bundle, the snapshot (None before the start) and the time [s]. A command
+    that waits for another of its kind counts as begun when that one ends.
     """
 
     def __init__(
@@ -71,9 +71,9 @@ class ActivityTracker(Observer):
 
     @property
     def saying(self) -> UnderWay | None:
-        """The text that is said now, else None.
+        """The text that is being said, else None.
 
-        If its end is not reported, it counts for its expected duration at most.
+        A text that did not come from the behaviour is dropped after its expected duration, as its end is not reported.
         """
         for id, said in tuple(self._speaking.items()):
             if said.seconds is None or self._now() - said.since < said.seconds:
@@ -111,7 +111,7 @@ class ActivityTracker(Observer):
             self.heard = Spoken(said, step.event.at)
 
     def approval(self, how: str, held: HeldEvent, why: str) -> None:
-        """Record a visitor's words when their event starts to wait, because they were said before a person decides."""
+        """Record a visitor's words as soon as their event starts to wait: they were said, whatever a person decides."""
         if how == "waits" and (said := self._words(held.event)):
             self.heard = Spoken(said, held.event.at)
 

@@ -126,7 +126,7 @@ class AnsweringThread:
 
 
 def _made(make: AnswerMaker) -> Any:
-    """Return the result of `make`; an error in it is logged, and refuses only this question."""
+    """Return the result of `make`; if it fails, log the error, and return a refusal of this question."""
     try:
         return make()
     except Exception as error:

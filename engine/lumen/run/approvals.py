@@ -20,7 +20,7 @@ from lumen.statechart import Snapshot, Step, step
 from lumen.statechart.nesting import behavior_of
 
 MAX_WAITING = 20
-"""The number of events that may wait for GO at once; one more makes the oldest stay."""
+"""The number of events that may wait for GO at once; one more drops the oldest."""
 LEFT, REPLACED, LATE = "the behaviour left the state", "too many other approvals are waiting", "no answer came"
 RELOADED, FORGOTTEN = "the files changed", "a visitor's data was deleted"
 
@@ -46,7 +46,7 @@ class HeldEvent(NamedTuple):
 
     @property
     def until(self) -> float:
-        """The time when it is decided without a person [s]; infinite if it waits for ever."""
+        """The time at which it is decided without a person [s]; infinite if it waits for ever."""
         within = self.marked.approval.within
         return inf if within is None else self.since + within
 
@@ -55,7 +55,7 @@ class ApprovalWatcher(Protocol):
     """An observer of events that wait for approval."""
 
     def approval(self, how: str, held: HeldEvent, why: str) -> None:
-        """Called when an event starts to wait, goes or stays (`how` is `waits`, `goes` or `stays`).
+        """Called when an event starts to wait, is released or is dropped (`how` is `waits`, `goes` or `stays`).
 
         `why` is the reason, in words.
         """
@@ -72,7 +72,7 @@ class Approvals:
         self.autonomy: Autonomy = "ask"
         self.waiting: tuple[HeldEvent, ...] = ()
         self.watchers: list[ApprovalWatcher] = []
-        """Notified whenever an event starts to wait, goes or stays."""
+        """Notified whenever an event starts to wait, is released or is dropped."""
         self.marked = False
         """Whether the machine has transitions that are marked for approval."""
         self._ids = count(1)
@@ -130,18 +130,18 @@ class Approvals:
         return True
 
     def set(self, level: Autonomy, by: str) -> None:
-        """Set autonomy for a person; at `alone` all waiting events go."""
+        """Set the autonomy on behalf of the person `by`; `alone` releases all waiting events."""
         self.autonomy = level
         while level == "alone" and self.waiting:
             self.decide("", by, go=True)
 
     def forget(self, person: PersonName) -> None:
-        """Make every waiting event stay, because its data may contain the name."""
+        """Drop every waiting event, because its data may contain the name."""
         while self.waiting:
             self._end(self.waiting[0], FORGOTTEN, None)
 
     def tick(self, now: float) -> list[Event]:
-        """Decide the events whose time has passed, and return the events that go at `now` [s]."""
+        """Decide the events whose time has passed; return all events released since the last tick, dated `now` [s]."""
         for held in [held for held in self.waiting if held.until <= now]:
             go = held.marked.approval.otherwise == "go"
             self._end(held, LATE, Cause("timer", f"approve {held.event.name}") if go else None)

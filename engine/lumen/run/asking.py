@@ -24,10 +24,11 @@ def operator_key(robot: str) -> str:
 
 
 def send_request(bus: Bus, key: str, body: Any, reply_to: str, *, first: float = FIRST_ANSWER_TIMEOUT) -> Iterator[Any]:
-    """Publish a message, and yield its answers as they arrive; stop the iteration after the last one.
+    """Publish a message, and yield its answers as they arrive.
 
-    Raises BusUnreachableError if no answer arrives within `first` [s], if the message comes back undelivered, or if the
-    broker blocks publishers.
+    The iteration does not end by itself, and waits for later answers without limit: the caller leaves it after the last
+    one. Raises BusUnreachableError if no answer arrives within `first` [s] (the broker may be blocking publishers), or
+    if the message comes back undelivered.
     """
     answers: queue.SimpleQueue[Any] = queue.SimpleQueue()
     mark = str(uuid.uuid4())

@@ -31,7 +31,10 @@ def compose(plan: Plan) -> Services:
 
 
 def start(exhibitions: Sequence[Services]) -> None:
-    """Start exhibitions: claim their robots' roles, make the remaining parts, and begin all parts."""
+    """Start exhibitions: claim their robots' roles, make the remaining parts, and begin all parts.
+
+    Raises UsageError if another process objects to a claim, and any error of a part's maker.
+    """
     claim(exhibitions)
     begin(exhibitions)
 

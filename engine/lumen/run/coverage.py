@@ -69,7 +69,7 @@ class Coverage:
 
     @property
     def percent(self) -> float:
-        """The lowest coverage of any kind [%]; 100 of a kind without items."""
+        """The lowest coverage of any kind [%]; a kind without items counts as 100."""
         return min(100.0 * some / every if every else 100.0 for some, every in self.counts.values())
 
     def gaps(self) -> list[Gap]:
@@ -82,7 +82,7 @@ class Coverage:
         return sorted([*unused, *(gap for behavior in self.entered for gap in self._gaps(behavior))])
 
     def use(self, command: Command) -> None:
-        """Count a command that a run is about to perform."""
+        """Count the skill, if any, of a command that a run is about to perform."""
         match command:
             case Start(_, Do(skill)):
                 self.used.add(skill)

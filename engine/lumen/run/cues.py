@@ -33,7 +33,10 @@ class MotionCues:
                 self._playing[id] = motion
 
     def answered(self, event: Event, project: Project, language: str) -> list[Command]:
-        """Return the commands that follow from an event: a cue's command, or the ends of a motion's commands."""
+        """Return the commands that follow from an event.
+
+        These are the command of a cue, or the cancellations of a motion's commands if it was cancelled or failed.
+        """
         if event.name == CUE and isinstance(event.data, Mapping):
             return self._cue(event.data, project, language)
         kind, _, id = event.name.partition(".command.")

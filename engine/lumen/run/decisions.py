@@ -105,7 +105,7 @@ class Decisions:
     """People's decisions, each with a line in the transcript.
 
     `record` writes an entry of the journal, `keep` saves the current decisions and waiting events, and `publish`
-    announces on the bus that an event waits, goes or stays.
+    announces on the bus that an event waits, is released or is dropped.
     """
 
     def __init__(
@@ -121,7 +121,7 @@ class Decisions:
         approvals.watchers.append(self)
 
     def recover(self, kept: Any, *, resumed: bool) -> None:
-        """Restore the autonomy of a run that crashed, and report the waiting events that were lost with it."""
+        """If a crashed run is resumed, restore its autonomy, and report the waiting events that were lost with it."""
         match kept:
             case {"autonomy": "ask" | "alone" as level, "waiting": list(waiting)} if resumed:
                 self._approvals.autonomy = level
@@ -134,7 +134,7 @@ class Decisions:
             self._write()
 
     def approve(self, id: str, by: str, *, go: bool) -> dict[str, Any]:
-        """Let the event with an id go or stay (the oldest for an empty id); return the verdict."""
+        """Release or drop the event with an id (the oldest for an empty id); return the verdict."""
         if self._approvals.decide(id, by, go=go):
             return {"verdict": "done"}
         waiting = ", ".join(f"`{held.id}` ({held.event.name})" for held in self._approvals.waiting)
@@ -152,7 +152,7 @@ class Decisions:
         return {"verdict": "done", "autonomy": level}
 
     def approval(self, how: str, held: HeldEvent, why: str) -> None:
-        """Report and record that an event waits, goes or stays."""
+        """Report and record that an event waits, is released or is dropped."""
         machine, wanted, _ = held.marked
         targets = ", ".join(machine.states[path].name for path in wanted.targets) or "what it does"
         self._narrator.line("operator", f"{held.event.name} {HOW[how]}, to {targets}" + (f": {why}" if why else ""))

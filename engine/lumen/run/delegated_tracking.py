@@ -81,14 +81,17 @@ class DelegatedTracking:
                 self._own.switch(Track(name))
 
     def play(self, id: str, command: Perform) -> bool:
-        """Request the motion module to play a motion under an id; return False if it can't."""
+        """Ask the motion module to play a motion under an id.
+
+        Return False if there is no such module, the motion is not the bundle's own, or the request can't be sent.
+        """
         name = command.motion.name
         if not self._able() or self._project.motions.get(name) is not command.motion:
             return False
         return self._request({"id": id, "play": name, "bundle": self._project.hash})
 
     def _delegate(self, track: Track) -> None:
-        """Request the motion module to switch a controller, unless the controller is to be on and moves no joint."""
+        """Ask the motion module to switch a controller, unless the controller is to be on and moves no joint."""
         found = self._project.controllers.get(track.controller)
         if not track.on or (found and found.output_bindings):
             self._request({"track": track.controller, "on": track.on})

@@ -113,7 +113,7 @@ class Exhibition:
         return self.node.tick()
 
     def run(self, seconds: float | None = None) -> float:
-        """Run for `seconds` [s], or until it is over (None); return how long it ran [s]."""
+        """Run until it is over, for at most `seconds` [s] (None: no limit); return how long it ran [s]."""
         return self.node.run(seconds)
 
     def send(self, route: str, body: Mapping[str, Any]) -> None:

@@ -42,7 +42,10 @@ class House:
         return not self._going or (self._together and len(self._going) < len(self.nodes))
 
     def interrupt(self, times: int = 1, *, leave: bool = False) -> None:
-        """Handle Ctrl-C: the first rests all robots, the second ends the run; safe in a signal handler."""
+        """Handle Ctrl-C: the first rests all robots, the second ends the run; safe in a signal handler.
+
+        The arguments are those of `Node.interrupt`.
+        """
         for node in self.nodes.values():
             node.interrupt(times, leave=leave)
 
@@ -66,7 +69,7 @@ class House:
         return self.now
 
     def run(self, seconds: float | None = None) -> float:
-        """Run for `seconds` [s], or until it is over (None); return how long it ran [s]."""
+        """Run until it is over, for at most `seconds` [s] (None: no limit); return how long it ran [s]."""
         with closing(GcScheduler()) as garbage:
             return live(self, seconds, garbage)
 

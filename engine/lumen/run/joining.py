@@ -30,7 +30,8 @@ REACH_PAUSE = 0.2
 class JoinedModule:
     """A program that takes part in an exhibition under a name; `join` makes it.
 
-    `bus` is the exhibition's bus, and `robot` the name of its robot. Use it in a `with` statement, or call `close`.
+    `bus` is the exhibition's bus, and `robot` the name of its robot. Use it in a `with` statement, or call `close`. If
+    it is made on the main thread, it handles SIGTERM, which then ends `wait` and not the program.
     """
 
     def __init__(self, name: str, robot: str, bus: Bus, project: Path | None) -> None:
@@ -111,7 +112,7 @@ def join(name: str = "", *, robot: str = "", bus: str = "", project: str = "") -
 
     A program that `lumen run` starts needs no arguments. A program elsewhere passes its name, the name of the robot,
     and the address of the bus; on the exhibition's machine the project's folder can replace the address. Raises
-    UsageError if the name is missing, BusError if the bus can't be reached within 30 s.
+    UsageError if the name is missing, BusError if the bus can't be reached (without an address: within 30 s).
     """
     name = name or os.environ.get(MODULE_VARIABLE, "")
     if not name:

@@ -71,7 +71,7 @@ def _wanted(project: Project, snapshot: Snapshot) -> Live:
 
 _BY_PEOPLE = ("stop", "resume")
 _FROM_THE_START = ("lost.command.", "brain.lost")
-"""Events that a behaviour receives when it resumes after the engine was away."""
+"""The prefixes of the events that a behaviour receives when it resumes after the engine was away."""
 
 
 def caused(event: Event) -> Event:
@@ -207,7 +207,7 @@ class BehaviorLoop:
         self._events.append(event)
 
     def approve(self, by: str, *, go: bool) -> str:
-        """Let the event that has waited longest go or stay; return why that is impossible, or an empty string."""
+        """Release or drop the event that has waited longest; return why that is impossible, or an empty string."""
         return "" if self.runtime.approvals.decide("", by, go=go) else NOTHING_WAITS
 
     def set_autonomy(self, level: Autonomy, by: str) -> None:

@@ -98,7 +98,7 @@ class Module:
             return self._changed.wait_for(lambda: not (self._waiting or self._busy), timeout)
 
     def close(self) -> None:
-        """Handle the waiting messages, and end the thread; calling it again does no harm."""
+        """Handle the waiting messages, and end the thread; wait at most 5 s. Calling it again does no harm."""
         for undo in self._undo:
             undo()
         self._undo = []
@@ -128,7 +128,7 @@ class Module:
         return row.key_for(self.project.robot) if row else default_key(route, self.project.robot)
 
     def tell(self, text: str) -> None:
-        """Report a line to the operator, once until `well` is called."""
+        """Report a text to the operators: each text once, and at most MAX_REASONS texts, until `well` is called."""
         if text not in self._told and len(self._told) < MAX_REASONS:
             self._told.add(text)
             self._tell(text)

@@ -51,8 +51,8 @@ class _Way:
 class Navigator:
     """A guide of the robot to places; it also reports the robot's place, by `arrived`, `left` and `doubtful`.
 
-    `begin` starts a walk of the robot under an id at a time [s], and is answered like any command. If a place is moved
-    during the walk, the robot walks to its new position; if it is removed, the walk fails.
+    `begin` starts a walk of the robot under an id at a time [s]; the robot answers it like any command. If a place is
+    moved during the walk, the robot walks to its new position; if it is removed, the walk fails.
     """
 
     def __init__(self, robot: Robot, begin: Callable[[str, RobotCommand, float], None]) -> None:

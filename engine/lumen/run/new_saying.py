@@ -32,8 +32,8 @@ _WORDS = frozenset(("null", "true", "false"))
 def write_saying(root: Path, saying: Saying, robot: str = "") -> Path:
     """Add a saying to the console's file; return its path relative to the project's folder.
 
-    All other bytes of the file stay the same. Raises UsageError, and writes nothing, if the file has errors before or
-    afterwards, or can't be written.
+    All other bytes of the file stay the same. Raises UsageError, and writes nothing, if the language or the text is
+    invalid, or the file has errors before or afterwards, or can't be written.
     """
     check_language(saying.language)
     text = one_line(saying.text, "text")

@@ -26,7 +26,7 @@ from lumen.upkeep.garbage import GcScheduler
 from lumen.upkeep.threads import ThreadWatch, WatchedThread
 
 SLOW, WELL = 0.95, 0.98
-"""The share of its speed below which time is slow, and the one above which it has recovered [1]."""
+"""The shares of its nominal speed below which a clock is slow, and above which it has recovered [1]."""
 LOOK_PERIOD = 1.0
 """The time between two checks of the pace [s]."""
 
@@ -86,7 +86,7 @@ EVERY_TICK = NodeTime()
 
 
 class Node:
-    """A loop that ticks its parts in order until one is over or the loop is interrupted.
+    """A loop that ticks its parts in order until one is over or the loop is interrupted twice.
 
     With a `presence` it is one of several processes, or a whole exhibition visible to others on the bus, and begins
     after its claim. The functions in `before` are called at each tick with its time [s], before the parts. In real time
@@ -151,7 +151,10 @@ class Node:
         return self._leaving
 
     def interrupt(self, times: int = 1, *, leave: bool = False) -> None:
-        """Handle Ctrl-C: the first rests a robot that is here, the second ends the run; safe in a signal handler."""
+        """Handle Ctrl-C: the first rests a robot that is here, the second ends the run; safe in a signal handler.
+
+        `times` is the number of interrupts to count. With `leave`, the next run continues from here.
+        """
         self._interrupts += times
         self._leaving = leave
 
@@ -160,7 +163,10 @@ class Node:
         self._asked = time.monotonic()
 
     def claims(self) -> bool:
-        """Return whether other processes can still object to this process's roles. Raises UsageError if one objects."""
+        """Return whether other processes can still object to this process's roles.
+
+        Raises UsageError if one objects, BusUnreachableError if none could because the broker accepts no messages.
+        """
         if self.presence is None or self.presence.settled:
             return False
         self.presence.tick()
@@ -226,7 +232,7 @@ class Node:
         return int((self._dozes.doze(self.now + min(rest, NAP) - TICK_PERIOD) - self.now) / TICK_PERIOD + ROUNDING)
 
     def pass_over(self, ticks: int) -> None:
-        """Let the time of `ticks` ticks pass, in which nothing happens."""
+        """Advance the time by `ticks` ticks in which nothing happens."""
         if ticks > 0:
             self.now = to_the_nanosecond(self.now + ticks * TICK_PERIOD)
             self._clock.wait(self.now)

@@ -24,7 +24,7 @@ def one_robot(root: Path, name: str = "") -> str:
 def robots_of(root: Path, names: str | None) -> Sequence[str]:
     """Return the robots in a comma-separated list of names, in its order; all of `robots:` if `names` is None.
 
-    The result is empty if lumen.yaml has one `robot:`. Raises UsageError for an unknown name.
+    The result is empty if lumen.yaml has one `robot:`. Raises UsageError for an unknown name or an empty list.
     """
     settings = main_settings(root) or Settings()
     if names is None:

@@ -33,8 +33,9 @@ def open(
     `story` is a scripted visitor. `language` is the language that the robot speaks first, by default the project's. Use
     the result in a `with` block, or `close` it.
 
-    Raises UsageError for an unknown name or an object that lacks a method, ProjectError for files with errors, BusError
-    and RobotError if the bus or the robot can't be reached.
+    Raises UsageError for an unknown name, several matching stories, an invalid speed, an object that lacks a method, or
+    a robot that another process on the bus already is; ProjectError for files with errors, BusError and RobotError if
+    the bus or the robot can't be reached.
     """
     if not isinstance(bus, str):
         need_methods(bus, Bus, "a bus")

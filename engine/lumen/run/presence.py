@@ -81,7 +81,7 @@ class Peer:
 class Presence:
     """This process among those of one robot's exhibition.
 
-    Until `settle` its signs of life request the others to answer at once. `more` returns further fields of its signs of
+    Until `settle` its signs of life ask the others to answer at once. `more` returns further fields of its signs of
     life.
     """
 
@@ -124,7 +124,7 @@ class Presence:
         self._state, self._next = HERE, 0.0
 
     def find(self, part: str) -> Peer | None:
-        """Return the live process that has a part; the oldest of several, None if there is none."""
+        """Return the live process that has a part, after its claim; the oldest of several, None if there is none."""
         peers = (peer for peer in self._peers.values() if part in peer.parts and peer.state == HERE)
         found = filter(self.alive, peers)
         return min(found, key=lambda p: p.since, default=None)
@@ -162,8 +162,8 @@ class Presence:
     def tick(self) -> list[Event]:
         """Send a sign of life when it is due, and read those of others; return the changes.
 
-        These are `robot.lost`, `robot.back`, and the same of `motion` and the other modules, each with `seconds` and no
-        time.
+        These are `robot.lost`, `robot.back`, and the same for `motion` and the other modules: events without a time of
+        their own, with the duration of the absence as `seconds` [s].
         """
         now, self.came = self._clock(), []
         self._excuse(now)

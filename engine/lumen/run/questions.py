@@ -53,7 +53,8 @@ class Questions:
     """The open questions; their answers become events at the next tick.
 
     Passages are searched here: that takes less than a millisecond and needs no module. `visit` counts the visits.
-    `today` returns the date on which passages must be valid, `offers` the events that a language model may raise now.
+    `today` returns the date on which passages must be valid (None: any), `offers` the events that a language model may
+    raise now.
     """
 
     def __init__(

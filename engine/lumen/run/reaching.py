@@ -37,8 +37,8 @@ class Reached(NamedTuple):
 def reach_exhibition(project: str | None, bus: str | None, robot: str = "") -> Reached:
     """Connect to the exhibition of a project (default: the one here or above); `bus` may be its bus's address.
 
-    Of several robots it is that of `robot`; by default the first one that runs here, else the first. Raises BusError,
-    with advice, if no exhibition is found.
+    Of several robots it is that of `robot`; by default the first one that runs here, else the first. Raises UsageError
+    for an unknown robot, BusError, with advice, if no exhibition is found.
     """
     root = running_project(project)
     wanted = one_robot(root, robot)

@@ -23,7 +23,7 @@ from lumen.run.story import StoryFailure, StoryPlayer
 from lumen.run.story_observations import UnmetExpectation
 
 REMEMBERED = 12
-"""The number of lines of the transcript that are kept for a failure, the last ones."""
+"""The number of lines at the end of the transcript that are kept for a failure."""
 
 
 @dataclass(frozen=True)

@@ -24,7 +24,7 @@ def resume_body(by: str) -> dict[str, Any]:
 
 
 def stop_behavior(bus: Bus, robot: str) -> None:
-    """Stop the behaviour if its robot does not answer; if the bus is gone, the message is lost."""
+    """Stop the behaviour of a robot that does not answer; if the bus is gone, nothing happens."""
     for key in (command_key(robot), COMMAND):
         with suppress(BusError):
             bus.publish(key, {"command": "stop"})

@@ -91,8 +91,8 @@ class Runtime:
     ) -> list[Command]:
         """Enter the initial states; return the commands to perform.
 
-        `context` overrides initial values. `epoch` is the date of time 0 [s since 1970], and `timezone` the IANA name
-        for times of day.
+        `context` overrides initial values. `language` is by default the project's first, `epoch` the date of time 0 [s
+        since 1970], and `timezone` the IANA name for times of day.
         """
         language = language or self.project.languages[0]
         arguments: dict[str, Any] = {"at": now, "input": context, "language": language, "epoch": epoch}

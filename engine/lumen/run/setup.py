@@ -76,8 +76,8 @@ def set_up(
     """Return the robot of a name, on its feet; `options` are the given options of its row.
 
     With `real_skills` the recording robot runs the code of added verbs. Raises UsageError if there is no such robot
-    here, or the options do not apply to it; LumenError with the name of the installed package if the robot's code is
-    faulty.
+    here, or the options do not apply to it; RobotError if it can't be reached, or its driver can't be used; LumenError
+    with the name of the installed package if the robot's code is faulty.
     """
     request = RobotRequest(project, speed, story, options, real_skills)
     if _is_own(kind, project):

@@ -114,7 +114,7 @@ class StoryEnvironment(Protocol):
         ...
 
     def approve(self, by: str, *, go: bool) -> str:
-        """Let the event that has waited longest go or stay; return why that is impossible, else an empty string."""
+        """Release or drop the event that has waited longest; return why that is impossible, else an empty string."""
         ...
 
     def set_autonomy(self, level: Autonomy, by: str) -> None:

@@ -14,7 +14,7 @@ MONDAY = date(2026, 6, 1)
 
 
 def story_epoch(story: Story | None, timezone: str) -> float:
-    """Return when a story begins by the clock in a time zone [s since 1970]; None has the default time."""
+    """Return when a story begins by the clock in a time zone [s since 1970]; without a story, the default time."""
     begins = (story and story.clock) or MORNING
     midnight = Schedule((0,), dates=(min(begins.dates, default=MONDAY),))
     first = next_moment(midnight, moment(-1e10, 0.0), timezone)

@@ -128,8 +128,8 @@ class Written(NamedTuple):
 def write_template(kind: str, name: str, root: Path) -> Written:
     """Write the files of one of `TEMPLATES` into a project.
 
-    Raises UsageError, and writes nothing, for a name that can't be used or if a file exists. Raises OSError if a file
-    can't be written.
+    Raises UsageError, and writes nothing, for a name that can't be used or if a file exists; also, with the program of
+    a module written, if lumen.yaml must be changed by hand. Raises OSError if a file can't be written.
     """
     if not _NAME.fullmatch(name):
         raise UsageError(f"a {kind} can't be called `{name}`: write letters, digits and `_`, beginning with a letter")

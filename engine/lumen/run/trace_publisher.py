@@ -74,7 +74,10 @@ class TracePublisher(Observer):
             self.approval("waits", held, "")
 
     def approval(self, became: str, held: HeldEvent, why: str) -> None:
-        """Publish that an event for a marked transition `waits`, `goes` or `stays`, and why."""
+        """Publish that an event for a marked transition waits, was released or was dropped, and why.
+
+        `became` is `waits`, `goes` or `stays`.
+        """
         project, (machine, wanted, approval) = self._project(), held.marked
         place = project.place(_file(project, machine), wanted.where)
         said: dict[str, Any] = {

@@ -83,7 +83,7 @@ class TraceSubscriber:
         return self._wish(APPROVE(id="", go=go, by=by))
 
     def set_autonomy(self, level: Autonomy, by: str) -> None:
-        """Request that marked transitions wait for GO, or not."""
+        """Request that marked transitions wait for GO, or not; a failure to send the request is ignored."""
         self._wish(AUTONOMY(level=level, by=by))
 
     def _wish(self, request: dict[str, Any]) -> str:

@@ -61,7 +61,7 @@ class VisitorActor:
             self._goal, self._leaving = replace(self._visitor, x=self._visitor.x + APPROACH_DISTANCE), True
 
     def speak(self, text: str, language: str = "") -> None:
-        """Say a text, which the speech module's messages contain at once."""
+        """Say a text: publish it at once, as the speech module would; a failure is only logged."""
         if isinstance(self._hall, HearsVisitors):
             self._hall.sound()
         body = {"name": "visitor", "result": text, "date": "", "language": language}

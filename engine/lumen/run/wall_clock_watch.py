@@ -8,7 +8,7 @@ from lumen.language.events import CLOCK_SET, Event
 from lumen.statechart import Snapshot
 
 TOLERANCE = 1.0
-"""Difference [s] that is ignored, because ticks may be late, and a simulation slower than real time."""
+"""The difference that is ignored [s], because ticks may be late, and a simulation slower than real time."""
 READINGS = 5
 """The greatest number of readings of both clocks, if a busy machine suspends the process between two readings."""
 

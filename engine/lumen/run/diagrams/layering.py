@@ -83,7 +83,7 @@ def _way(
 
 
 def _without_cycles(nodes: Sequence[N], edges: Sequence[Edge[N]]) -> list[Edge[N]]:
-    """Return the edges without loops, those reversed that close a cycle in a depth-first walk from the first node."""
+    """Return the edges without loops; those that close a cycle in a depth-first walk from the first are reversed."""
     out: dict[N, list[N]] = {n: [] for n in nodes}
     for one, other in edges:
         out[one].append(other)

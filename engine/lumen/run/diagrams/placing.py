@@ -9,7 +9,7 @@ from lumen.run.diagrams.layering import GAP, Extent, Point, layered
 WIDEST, WAYS = 1260.0, 60.0
 """The greatest width of a layer, and the room around a frame for arrows [px], so that a width of 1400 suffices."""
 TITLE, ROW = 14.0, 12.0
-"""Sizes of letters [px]."""
+"""The font sizes of titles and rows [px]."""
 TITLE_HEIGHT, ROW_HEIGHT = 20.0, 16.0
 PADDING = 12.0
 FRAME = 22.0
@@ -111,7 +111,7 @@ def _between(boxes: Sequence[StateBox], arrows: Sequence[tuple[str, str]]) -> li
 
 
 def _shelves(sizes: Mapping[str, Extent], widest: float) -> tuple[dict[str, Point], Extent]:
-    """Return the corners of boxes side by side, and below if there is no more room, with the size of all."""
+    """Return the corners of boxes set in rows of at most `widest` [px] if possible, and the size of the whole."""
     corners: dict[str, Point] = {}
     x = y = height = width = 0.0
     for id, size in sizes.items():

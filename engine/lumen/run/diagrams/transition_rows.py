@@ -9,7 +9,7 @@ from lumen.language.diagnostics import NodePath
 from lumen.language.machines import MachineDefinition, State, StateKind, Transition
 
 MAX_ROW = 46
-"""The greatest number of characters of a row."""
+"""The number of characters to which a cause is cut and a row is wrapped; the target at its end may exceed it."""
 AGAIN = "again"
 
 

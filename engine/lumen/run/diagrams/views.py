@@ -25,7 +25,7 @@ def overview(machine: MachineDefinition) -> Diagram:
 
 
 def region(machine: MachineDefinition, name: str) -> Diagram:
-    """Return the picture of a state's content and transitions. Raises UsageError if the state does not exist."""
+    """Return the picture of a state's content and transitions. Raises UsageError if no such state contains others."""
     state = _named(machine, name, lambda state: bool(state.children))
     box = _box(machine, state, _led_here(machine), rows=True)
     return Diagram(f"{machine.id}: {state.name}", (box,), _arrows(machine, state.path))

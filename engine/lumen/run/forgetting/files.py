@@ -53,7 +53,7 @@ def forget_inputs(folder: Path, name: str, found: Forgetting) -> None:
 
 
 def attempt(found: Forgetting, file: Path, work: Callable[[], None]) -> None:
-    """Do `work` if the file exists; a file that can't be written is recorded in `found.left`, and raises nothing."""
+    """Do `work` if the file exists; if it raises ModuleError, record the file in `found.left` instead of raising."""
     try:
         if file.exists():
             work()

@@ -15,8 +15,9 @@ BRAIN_TIMEOUT = 5.0
 class BrainGuard:
     """A watch over the brain that the robot follows.
 
-    When a brain comes back or replaces it, `notice` is called with `brain.lost` and the time without a brain. If the
-    robot's own process was paused for so long that its brain lost it, the robot rests first.
+    After BRAIN_TIMEOUT without a brain, the robot rests; when that brain comes back or another one replaces it,
+    `notice` is called with `brain.lost` and the time without a brain [s]. The robot also rests if its own process was
+    paused for so long that its brain lost it.
     """
 
     def __init__(

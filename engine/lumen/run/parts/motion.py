@@ -27,8 +27,8 @@ _log = logging.getLogger(__name__)
 class MotionPart(Part):
     """The part that sends the robot the keyframes of the requested motions, and aims its head by the controllers.
 
-    If the brain is gone, the controllers are switched off, and a brain that returns requests them again. They restart
-    with another robot.
+    If the brain is gone, the controllers are switched off, and a brain that returns requests them again. If another
+    process takes over the robot, they restart.
     """
 
     name = MOTION

@@ -29,7 +29,9 @@ MAX_PENDING_PRESENCES = 1_000
 """The number of signs of life that may wait for a tick; one more drops the oldest."""
 BUS_VARIABLE, PROJECT_VARIABLE = "LUMEN_BUS", "LUMEN_PROJECT"
 ROBOT_VARIABLE, MODULE_VARIABLE = "LUMEN_ROBOT", "LUMEN_MODULE"
-"""The environment variables of a program that is started here: the bus's address, or else the project to find it by."""
+"""The environment variables of a program that is started here: the bus's address if it is not only local, the project's
+folder, the robot, and the module.
+"""
 
 
 class OwnModulePart(Part):

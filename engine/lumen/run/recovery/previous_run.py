@@ -32,7 +32,7 @@ class Recovery(NamedTuple):
     how: Resumption | FreshStart
     """The resumption, or the fresh start."""
     news: tuple[ReloadReport, ...] = ()
-    """The reports of the reloads that the start was."""
+    """The report on the start as a reload; empty if the files are those of the previous run."""
 
 
 def recover(root: Path, records: RunRecords, project: Project) -> Recovery:

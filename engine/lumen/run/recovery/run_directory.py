@@ -52,7 +52,7 @@ class RunDirectory:
         self.records = RunRecords(self.home)
         self._ended = False
         self.news: list[ReloadReport] = []
-        """Reports of the reloads that this start was; they are published once the bus is open."""
+        """Reports on this start as a reload; they are published once the bus is open."""
         self._door: LocalBusServer | None = None
         self._bus = ""
 
@@ -136,7 +136,10 @@ class RunDirectory:
         self.home.write_json(ADDRESS_FILE, data)
 
     def close(self, *, forget: bool) -> None:
-        """Release the home; `forget` deletes the snapshot of a run that ended normally and has nothing to resume."""
+        """Release the home.
+
+        `forget` deletes the snapshot of a run that ended normally and has nothing to resume, and a person's hold.
+        """
         if self.home is None:
             return
         self.records.close()

@@ -90,7 +90,7 @@ BOUND = 10_000
 
 
 def against(old: Project, new: Project, tell: Callable[[int, int], None] = lambda *_: None) -> list[Diagnostic]:
-    """Return the findings, each once, by place, for every reachable configuration of the old behaviour.
+    """Return the findings, each once, sorted by place, for up to BOUND reachable configurations of the old behaviour.
 
     `tell` is called with the numbers of configurations that were explored and that wait.
     """

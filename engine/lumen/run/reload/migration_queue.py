@@ -113,7 +113,7 @@ class MigrationQueue:
         return self._behavior.loop.project
 
     def stage(self, staged: StagedBundle, order: ReloadRequest | None = None) -> None:
-        """Activate a bundle as soon as possible."""
+        """Activate a bundle as soon as possible; it replaces the staged one, and takes over its requests."""
         if self.staged and self.staged is not staged:
             staged.orders += self.staged.orders
         if order:

@@ -23,7 +23,10 @@ class ReloadReport:
     """One verdict on files."""
 
     verdict: str
-    """`unchanged`, `staged`, `waiting`, `applied`, `refused`, `rolled back`, `dry run` or `status`."""
+    """The result of a reload: `unchanged`, `staged`, `waiting`, `applied`, `refused`, `rolled back` or `dry run`.
+
+    In an answer to a request also `judging`, `stopped` or `status`.
+    """
     who: str
     """The origin: `files`, `command`, `trial`, `probation`, or `start` for a run with other files than the last."""
     before: str = ""

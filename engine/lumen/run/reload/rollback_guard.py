@@ -41,7 +41,7 @@ class RollbackGuard:
         self.before, self._until = _lean(before), now + PERIOD
 
     def over(self, now: float) -> bool:
-        """Return whether the bundle passes its probation at this call."""
+        """Return whether the bundle passes its probation at this call; it is then `good`."""
         if self._until is None or now < self._until:
             return False
         self._until, self.good = None, _lean(self._behavior.loop.project)

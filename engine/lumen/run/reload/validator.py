@@ -139,7 +139,10 @@ class BundleValidator:
         return replace(visits, mode=check.mode, budget=check.budget)
 
     def advise(self, validation: Validation, urgent: Callable[[], bool]) -> list[Rehearsal]:
-        """Return the failures of other stories of the changed behaviours, as long as nothing is `urgent`."""
+        """Return the failures of other stories of the changed behaviours.
+
+        It stops when `urgent` returns True or the time is used up. It is empty if other files were loaded since.
+        """
         if not validation.good or validation.project is None:
             return []
         others = _touched_stories(validation.project, validation.changes, validation.saved.changed)

@@ -23,7 +23,7 @@ from lumen.run.snapshot_store import SnapshotStore
 class KeptBundles:
     """The bundles stored in the home of the project in `root`, each read on first use.
 
-    `robot` is one of its `robots:`.
+    `robot` is one of its `robots:`; empty if it has one `robot:`.
     """
 
     def __init__(self, root: Path, robot: str = "") -> None:
@@ -82,7 +82,7 @@ def chosen(root: Path, word: str | None, *, all: bool = False, robot: str = "") 
     """Return the journal in `root` that a word means: a file, `today`, `yesterday`, or a day such as `2026-11-23`.
 
     Without a word it is the last run, which may be a story; `all` means every recorded visit. Raises UsageError if
-    there is no such journal.
+    there is no such journal, JournalError if the file is unreadable.
     """
     folder = home_of(root, robot) / JOURNAL_FOLDER
     if word and (word.endswith(JOURNAL_SUFFIX) or "/" in word):

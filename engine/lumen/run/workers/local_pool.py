@@ -41,9 +41,9 @@ def local_pool(count: int, folder: Path) -> Iterator[Executor]:
 
 @contextmanager
 def working_folder() -> Iterator[Path]:
-    """Make a folder for the time of the work.
+    """Make a temporary folder, which is deleted at the end of the context.
 
-    SIGTERM then ends the process like Ctrl-C, so that the folder is deleted.
+    On the main thread, SIGTERM meanwhile ends the process like Ctrl-C, so that the folder is deleted.
     """
     handled = threading.current_thread() is threading.main_thread() and (
         signal.getsignal(signal.SIGTERM) is signal.SIG_DFL
