@@ -33,7 +33,7 @@ class CommandParameters:
         return number(value, f"the parameter `{name}` of `{self.method}`")
 
     def fraction(self, name: str, default: float) -> float:
-        """Return a speed as a fraction of the maximum, as in NAOqi, limited to 0.01 to 1."""
+        """Return a speed as a fraction of the maximum, as in NAOqi, clipped to the range from 0.01 to 1."""
         return min(max(self.number(name, default), 0.01), 1.0)
 
     def text(self, name: str, default: str | None = None) -> str:

@@ -23,7 +23,7 @@ class CommandRecord:
     asker: Message
     """The message that brought it, or the last query about it."""
     id: str = ""
-    """The id from its sender; empty if the sender gave none, as the modules of 2015."""
+    """The id from its sender; empty if the sender gave none, like the modules of 2015."""
     method: str = ""
     """The method of its body in lower case; empty if unknown."""
     at: str = ""

@@ -58,7 +58,7 @@ from lumen.robot.motion_codec import decode_motion, encode_motion
 C = TypeVar("C")
 
 SPEECH_PAUSE, SPEECH_PER_CHARACTER = 0.4, 0.06
-"""The duration of a text on a robot without a voice [s], and the additional duration of each character [s]."""
+"""The base duration of a text on a robot without a voice, and the additional duration of each character [s]."""
 WALKING_SPEED, TURNING_SPEED = 0.1, 0.25
 """The speed of the recording robot's walk [m/s] and turn [rad/s]: the simulated robot turns by 90 degrees in 7 s."""
 USUAL_DURATION, LOOK_DURATION = 2.0, 1.0

@@ -12,7 +12,7 @@ from lumen.motion.limits import LIMIT_SLACK
 from lumen.motion.trajectories import track
 
 APPROACH_TIME, RECOVERY_TIME = 1.2, 0.8
-"""The time [s] to the posture that a motion begins in, and of the way back to it from a cancelled motion."""
+"""The shortest time [s] to the posture that a motion begins in, and back to it from a cancelled motion."""
 
 LOOK_SPEED = 1.5
 """The speed of a head that turns to look somewhere [rad/s]."""

@@ -72,7 +72,7 @@ class LifeLayer:
         self.style, self.speech.library = command.style, command.gestures
 
     def touched(self, sensor: str, now: float) -> None:
-        """Look towards a touched sensor, if the style has attention. `now` [s]."""
+        """Look towards a sensor that was touched at `now` [s], if the style has attention; ignore unknown sensors."""
         if sensor in TOUCHED:
             self._attention = Attention(*TOUCHED[sensor], now)
 

@@ -29,7 +29,8 @@ def encode_motion(motion: MotionDefinition) -> dict[str, Any]:
 def decode_motion(data: Any, body: Body) -> MotionDefinition:
     """Return the motion in the data, for this body.
 
-    Raises RobotError for malformed data, for joints and postures that the body lacks, and for angles beyond limits.
+    Raises BadCommandError for malformed data, too many keys, an invalid duration, joints and postures that the body
+    lacks, and angles beyond limits.
     """
     if not isinstance(data, Mapping):
         raise BadCommandError("a `motion` must be an object with `name`, `duration` and `tracks`")

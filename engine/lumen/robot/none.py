@@ -1,4 +1,4 @@
-"""No robot at all: the behaviour runs, every command is refused."""
+"""No robot at all: the behaviour runs, but every command is refused."""
 
 from collections.abc import Sequence
 

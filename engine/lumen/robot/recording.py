@@ -91,7 +91,7 @@ class _Walking(_Lasting):
 
 
 class RecordingRobot(ExecutingRobot):
-    """Gives commands realistic durations: its own for a motion, 0.4 s and 0.06 s per character for a text.
+    """Gives commands realistic durations: its own for a motion, 0.4 s plus 0.06 s per character for a text.
 
     `behaves` maps a verb to `fails`, `hangs` or another duration [s], `results` an added verb to its result (else it is
     made of the defaults of its schema). With a `runner` other added verbs are performed by their code. `performed`

@@ -84,7 +84,7 @@ class SensePublisher:
         self._thread = None if direct else self._started()
 
     def hand(self, handed: PendingReading) -> None:
-        """Publish this reading next; it replaces one that still waits."""
+        """Publish this reading next; it replaces one that still waits. While the sense is off, drop it."""
         if self._thread is None and not self.count.off:
             self._perform(handed)
             return

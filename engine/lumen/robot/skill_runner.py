@@ -45,7 +45,10 @@ class SkillRunner:
         self._ends |= ends
 
     def begin(self, command: Do, now: float) -> "RunningSkill | PretendedSkill":
-        """Begin a verb at `now` [s]. Raises RobotError if it is unknown, or a cancelled call of it has not ended."""
+        """Begin a verb at `now` [s].
+
+        Raises RobotError if it is unknown, a cancelled call of it has not ended, or it is set to fail.
+        """
         verb = added_verb(command)
         if (end := self._ends.get(command.skill)) is not None:
             return PretendedSkill(command, verb, end, now)
@@ -103,7 +106,10 @@ class RunningSkill:
         self._changed = Condition()
 
     def advance(self, now: float) -> bool:
-        """Run the performer until `now` [s]; return True once it has ended or was cancelled."""
+        """Run the performer until `now` [s]; return True once it has ended or was cancelled.
+
+        Raises RobotFailedError if it failed.
+        """
         with self._changed:
             self._now = now
             if self._until is not None and now >= self._until:

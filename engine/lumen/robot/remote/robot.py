@@ -69,7 +69,7 @@ class _Pending:
 
 
 Delegate = Callable[[str, Perform], bool]
-"""A function that lets another module perform a motion under an id; it returns False if no such module exists."""
+"""A function that lets another module perform a motion under an id; it returns False if none takes it."""
 
 
 class RemoteRobot:
@@ -188,7 +188,7 @@ class RemoteRobot:
         return found[0] if found else None
 
     def time(self) -> float | None:
-        """The robot's own time [s], from its newest reading and the time since that arrived; None before the first."""
+        """Return the robot's time [s], from its newest reading and that one's age; None before the first reading."""
         newest = max(self._readings.values(), key=lambda found: found[1], default=None)
         return None if newest is None else newest[0].time + self._clock() - newest[1]
 
