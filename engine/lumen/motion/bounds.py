@@ -17,7 +17,7 @@ from lumen.motion.limits import LIMIT_SLACK, Excess, beyond_limits, coupled_rang
 from lumen.ports import Aim, NativeCommand, Perform
 
 MAX_FITS = 50
-"""Rounds of changes, at most: one change may require another, and each brings the motion closer to the limits."""
+"""The greatest number of rounds of changes: one change may require another, and each brings the motion closer."""
 
 SPEED_MARGIN = 1.005
 """Factor on the time that a joint needs, so that rounding does not make it too fast again."""

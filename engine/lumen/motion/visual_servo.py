@@ -37,7 +37,7 @@ class JointHistory:
 
     @property
     def last(self) -> float:
-        """Return the time of the newest entry [s]."""
+        """The time of the newest entry [s]. Raises IndexError if there is none."""
         return self.known[-1][0]
 
     def add(self, time: float, angles: Mapping[str, float]) -> None:

@@ -32,7 +32,7 @@ class DeadReckoning:
 
     @property
     def whereabouts(self) -> Whereabouts:
-        """Return the estimated place and heading, and the possible error of the place [m]."""
+        """The estimated place and heading, and the possible error of the place [m]."""
         return Whereabouts(self.x, self.y, self.theta, self.slid + sqrt(self._place))
 
     def follow(self, x: float, y: float, theta: float) -> None:
@@ -67,7 +67,7 @@ LONGEST_LEG = 2.0
 """The longest straight walk [m], before the robot checks its position again."""
 
 SPARE_LEGS = 6
-"""Walks that a way may use in addition to the necessary ones."""
+"""The number of walks that a way may use in addition to the necessary ones."""
 
 LEAVING = 1.2
 """The robot leaves its place at this multiple of `within`: hysteresis, because its position sways."""

@@ -127,8 +127,8 @@ def strides(feet: Feet, velocity: Velocity, first: Side, pace: GaitParameters, c
     """Return the next `count` steps at that velocity; `first` begins, then the feet alternate.
 
     Each step starts from the correct place of the bearing foot, so that the error of one step is not repeated. In
-    sideways motion the foot on that side makes the way of two steps and the other one follows, because the feet must
-    not touch.
+    sideways motion the foot on that side covers the distance of two steps and the other one follows, because the feet
+    must not touch.
     """
     speed, time = velocity.within(pace), pace.double + pace.single
     steps: list[Footstep] = []

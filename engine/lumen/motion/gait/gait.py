@@ -112,7 +112,7 @@ class Gait:
 
     @property
     def left(self) -> tuple[float, float]:
-        """Return the estimated distance from the goal [m], [rad]; zeros if the goal is a velocity."""
+        """The estimated distance from the goal [m] and turn to it [rad]; zeros if the goal is a velocity."""
         if isinstance(self.goal, Velocity):
             return 0.0, 0.0
         way = self.goal.seen_from(middle(self.feet))
@@ -120,7 +120,7 @@ class Gait:
 
     @property
     def coming(self) -> list[Footstep]:
-        """Return the remaining steps as planned now; for a velocity, the next step and one that ends the walk."""
+        """The remaining steps as planned now; for a velocity, the next step and one that ends the walk."""
         if isinstance(self.goal, Velocity):
             step = strides(self.feet, self._speed, self._side, self.pace, 1)[0]
             return [step, self._beside(step.pose, other(step.side))]

@@ -77,7 +77,7 @@ class LegGeometry:
 
     @property
     def length(self) -> float:
-        """Return the length of the stretched leg from hip to ankle [m]."""
+        """The length of the stretched leg from hip to ankle [m]."""
         return self.thigh + self.tibia
 
     def joints(self, side: Side, angles: LegAngles) -> dict[str, float]:

@@ -28,17 +28,17 @@ class GaitPhase:
 
     @property
     def over(self) -> bool:
-        """Return True after the last tick."""
+        """Whether the last tick has passed."""
         return self.tick == len(self.zmp)
 
     @property
     def part(self) -> float:
-        """Return the part of its path that the foot in the air will have covered after this tick."""
+        """The part of its path that the foot in the air will have covered after this tick."""
         return (self.tick + 1 - self.lifts) / max(1, len(self.zmp) - self.lifts)
 
     @property
     def lifted(self) -> Side | None:
-        """Return the foot in the air, if any."""
+        """The foot in the air; None if both are on the ground."""
         return self.swing.side if self.swing and self.tick >= self.lifts else None
 
 

@@ -14,16 +14,16 @@ class Pose(NamedTuple):
 
     @property
     def place(self) -> complex:
-        """Return the place as a complex number, x + iy [m]; rotation is multiplication there."""
+        """The place as a complex number, x + iy [m], which a multiplication rotates."""
         return complex(self.x, self.y)
 
     @property
     def ahead(self) -> complex:
-        """Return the unit vector of its heading."""
+        """The unit vector of its heading, as a complex number."""
         return rect(1.0, self.theta)
 
     def then(self, other: "Pose") -> "Pose":
-        """Return `other`, which is relative to this pose, in the frame of this pose."""
+        """Return `other`, which is given relative to this pose, in the frame in which this pose is given."""
         return pose(self.place + other.place * self.ahead, self.theta + other.theta)
 
     def seen_from(self, origin: "Pose") -> "Pose":

@@ -42,7 +42,7 @@ PEAK_SLOPE = 2 * pi * max(1.0, sum(part * pace for part, pace in _WANDERING))
 
 
 def sway(style: LifeStyle, seed: int, t: float) -> dict[str, float]:
-    """Return the offset of each joint at `t` [s] [rad; hands 0..1]."""
+    """Return the offset of each joint [rad; hands 0..1] at `t` [s]."""
     found: dict[str, float] = {}
     for each in style.sways:
         phases, turns = _phases(seed, each.name), 2 * pi * t / each.period
@@ -75,16 +75,14 @@ def settle(settles: Settles, since: float) -> Mapping[str, float]:
 
 
 WARM, HOT = 60.0, 72.0
-"""In idle life, a part of the body moves less if its motors are warmer than `WARM`, and not from `HOT` on [degrees
-Celsius].
-"""
+"""In idle life, a part moves less if its motors are warmer than `WARM`, and not at all from `HOT` on [°C]."""
 
 LOW, EMPTY = 25.0, 5.0
 """Idle life is reduced if the charge of the battery is below `LOW`, and absent from `EMPTY` down [%]."""
 
 
 def vigour(temperature: float, percentage: float) -> float:
-    """Return the factor on the amplitudes, 0 to 1, for a motor temperature and the charge of the battery [%]."""
+    """Return the factor on the amplitudes, 0 to 1, for a motor temperature [°C] and the charge of the battery [%]."""
     cool = (HOT - temperature) / (HOT - WARM)
     charged = (percentage - EMPTY) / (LOW - EMPTY)
     return max(0.0, min(1.0, cool, charged))
@@ -113,7 +111,7 @@ def _within(path: str, outer: str) -> bool:
 
 
 TURN_TIME = 0.5
-"""Time of the head to turn to a glance, and back [s]."""
+"""The time that the head takes to turn to a glance, and to turn back [s]."""
 
 NOD_TIME = 0.7
 """Duration of a nod [s]."""
@@ -127,7 +125,7 @@ class Attention(NamedTuple):
     pitch: float
     """Down [rad, of the head]."""
     at: float
-    """Since when it has attention [s]."""
+    """When it got the robot's attention [s]."""
     latest: float = -inf
     """The time of the newest stimulus, if there were several [s]."""
 
