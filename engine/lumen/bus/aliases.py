@@ -20,9 +20,9 @@ COPY = "/alias"
 AWAY_AFTER = 10.0
 """Silence after which another robot counts as gone [s]; its signs of life come every half second."""
 MAX_ROBOTS = 100
-"""Other robots that are remembered, the most recent ones, to bound the memory."""
+"""The number of other robots that are remembered; one more replaces the one that has been silent for longest."""
 MAX_NAME = 100
-"""Characters that are kept of each name."""
+"""The number of characters that are kept of each name."""
 PRESENCE = "presence"
 
 _log = logging.getLogger(__name__)

@@ -15,7 +15,7 @@ import orjson
 from lumen.errors import BadMessageError
 
 MAX_BODY_DEPTH = 64
-"""Deepest nesting of lists and objects in a body."""
+"""The deepest nesting of lists and objects that a body may have."""
 MAX_BODY_BYTES = 1024 * 1024
 """Longest body [bytes of JSON in UTF-8]."""
 MAX_KEY_BYTES = 255
@@ -176,7 +176,7 @@ def decode(data: bytes, content_type: str = JSON, content_encoding: str = "") ->
 
 
 def _is_utf_16(data: bytes) -> bool:
-    """Return whether bytes look like ASCII in UTF-16 without a mark: of two bytes always one is zero."""
+    """Return whether bytes look like ASCII in UTF-16 without a byte order mark: every second byte is zero."""
     even, odd = data[0:8:2], data[1:8:2]
     return bool(odd) and any(all(letters) and not any(zeros) for letters, zeros in ((even, odd), (odd, even)))
 

@@ -78,7 +78,7 @@ class Stream(Protocol):
         ...
 
     def close(self) -> None:
-        """Stop reading; entries that were not taken are read again by the next reader from there."""
+        """Stop reading; a later reader can still read the entries that were not taken."""
         ...
 
 
@@ -100,7 +100,7 @@ def has_streams(url: str) -> bool:
 
 
 def stream_of(url: str, name: str, first: int) -> Stream | None:
-    """Read a stream from the offset `first` on; return None if the broker has no such stream.
+    """Read a stream from the offset `first` on; return None if there is no such stream, or that bus can't have any.
 
     Raises BusError if the broker can't be reached.
     """

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from jsonschema.exceptions import ValidationError
 
 MAX_SHOWN_CHARACTERS = 80
-"""Characters of a long reason that are shown at either end."""
+"""The number of characters of a long reason that are shown at either end."""
 
 
 def body_checks(project: Project) -> dict[str, "SchemaCheck"]:

@@ -60,9 +60,9 @@ def _match(pattern: tuple[str, ...], key: tuple[str, ...]) -> bool:
 HANDLER_TIMEOUT = 5.0
 """Longest wait of closing for a subscriber that is still working [s]."""
 MAX_CACHED_KEYS = 4_096
-"""Keys whose listeners are cached."""
+"""The number of keys whose listeners are cached; at that number the cache is cleared."""
 MAX_QUEUED_MESSAGES = 100_000
-"""Messages that wait for a subscriber; one more drops the oldest."""
+"""The number of messages that may wait for subscribers; one more drops the oldest."""
 
 _log = logging.getLogger(__name__)
 
@@ -182,7 +182,7 @@ class MemoryBus(Bus):
 
     @property
     def dropped(self) -> Mapping[str, int]:
-        """Number of dropped messages, by key."""
+        """The number of dropped messages, by key."""
         return self._hub.drops.counts
 
     def carry(self, routes: Mapping[str, Route]) -> None:

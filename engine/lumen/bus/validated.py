@@ -20,7 +20,7 @@ OnRefused = Callable[[str, str], object]
 """Called for a message that was not delivered, with its key and the reason."""
 
 MAX_FAULTS = 100
-"""Different faults of subscribers that are reported; later ones are not."""
+"""The number of different faults of subscribers that are reported; later ones are not."""
 
 _log = logging.getLogger(__name__)
 

@@ -33,7 +33,7 @@ from lumen.upkeep.drops import DropLog
 from lumen.upkeep.threads import WatchedThread
 
 MAX_UNSENT_BYTES = 64 * 1024 * 1024
-"""Frames that wait [bytes]; more drop the oldest."""
+"""The total size of the frames that may wait [bytes]; more drop the oldest."""
 
 
 class SendBuffer:
@@ -46,7 +46,7 @@ class SendBuffer:
         self._changed = threading.Condition()
 
     def put(self, frame: bytes) -> None:
-        """Append a frame; drop the oldest ones if it exceeds MAX_UNSENT_BYTES."""
+        """Append a frame; drop the oldest ones if all exceed MAX_UNSENT_BYTES."""
         with self._changed:
             self._frames.append(frame)
             self._bytes += len(frame)
@@ -79,7 +79,7 @@ class SendBuffer:
 CLOSE_TIMEOUT = 5.0
 """Longest time for closing [s]."""
 MAX_UNHANDLED_MESSAGES = 20_000
-"""Messages that wait for a handler; one more drops the oldest."""
+"""The number of messages that may wait for a handler; one more drops the oldest."""
 
 _log = logging.getLogger(__name__)
 

@@ -13,7 +13,7 @@ from lumen.bus.bodies import MAX_BODY_BYTES
 MAX_FRAME_BYTES = MAX_BODY_BYTES + 4_096
 """Longest frame [bytes]: a body and its surroundings."""
 RECEIVE_BYTES = 1 << 16
-"""Bytes that are read from the socket at once."""
+"""The greatest number of bytes that are read from the socket at once."""
 CLIENT, SERVER = "guest", "door"
 """The names of the two sides in a proof; they must stay the same for compatibility with older versions."""
 
@@ -37,7 +37,7 @@ def framed(head: list[Any], body: bytes) -> bytes:
 
 
 def unframed(buffer: bytearray) -> Iterator[list[Any]]:
-    """Remove the complete frames from the front of the buffer and yield them. Raises BadFrameError."""
+    """Remove the complete frames from the front of the buffer, and yield them. Raises BadFrameError for a bad one."""
     while len(buffer) >= _LENGTH.size:
         (length,) = _LENGTH.unpack_from(buffer)
         if length > MAX_FRAME_BYTES:

@@ -35,13 +35,13 @@ from lumen.upkeep.drops import DropLog
 from lumen.upkeep.threads import WatchedThread
 
 MAX_CLIENTS = 32
-"""Connections at a time; further ones are closed at once."""
+"""The number of connections at a time; further ones are closed at once."""
 MAX_SUBSCRIPTIONS = 1_000
-"""Subscriptions of one client."""
+"""The number of subscriptions of one client; one more disconnects it."""
 MAX_CLIENT_MESSAGES = 20_000
-"""Messages that wait for one client; one more drops the oldest."""
+"""The number of messages that may wait for one client; one more drops the oldest."""
 MAX_UNSENT_BYTES = 32 * 1024 * 1024
-"""Frames that wait for one client [bytes]; more drop the oldest."""
+"""The total size of the frames that may wait for one client [bytes]; more drop the oldest."""
 PROOF_TIMEOUT = 5.0
 """Longest time for a client to prove that it has the key [s]."""
 FLUSH_MARK = "lumen.door.mark"
