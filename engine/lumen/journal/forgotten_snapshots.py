@@ -35,7 +35,10 @@ def forgetful(machine: MachineDefinition, snapshot: Snapshot, person: PersonName
 
 
 def forgetful_data(frozen: Mapping[str, Any], person: PersonName) -> dict[str, Any]:
-    """Return the data of a snapshot (`lumen.statechart.serialize`) without the name; leave other data unchanged."""
+    """Return the data of a snapshot (`lumen.statechart.serialize`) without the name in its context and its timers.
+
+    The snapshots of invoked behaviours are replaced in `frozen` itself.
+    """
     found = dict(frozen)
     if "context" in found:
         found["context"] = _values(found["context"], person)

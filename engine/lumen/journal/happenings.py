@@ -12,7 +12,7 @@ NOT_TAKEN = {"refused": "reload-refused", "rolled back": "reload-rolled-back"}
 def happening(message: Message, robot: str) -> str:
     """Return what a message reports about this robot, as a word or the text of a mark; empty for usual messages.
 
-    Unusual are a fall, an error that reaches the behaviour, files that are refused or rolled back, and a mark.
+    Unusual messages report a fall, an error that reaches the behaviour, a refusal or rollback of files, or a mark.
     """
     match message.body:
         case {"ask": operator_requests.MARK.ask, **rest} if message.key in _keys(OPERATOR_REQUEST, robot):

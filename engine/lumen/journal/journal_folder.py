@@ -70,7 +70,7 @@ class JournalFolder:
 
 
 def newest(home: Path) -> Path | None:
-    """Return the journal file in a state folder that a run writes, or wrote last; None without such a file."""
+    """Return the journal file that a run with this home writes, or wrote last; None without such a file."""
     return max((home / JOURNAL_FOLDER).glob(f"*{JOURNAL_SUFFIX}"), default=None)
 
 
@@ -88,7 +88,7 @@ def headers(folder: Path) -> Iterator[tuple[Path, JournalHeader]]:
 
 MAX_ENTRIES = 2_000
 MAX_BYTES = 4_000_000
-"""The total size of their lines [bytes]."""
+"""The greatest total size of the lines in memory [bytes]; MAX_ENTRIES is their greatest number."""
 
 PositionedLine = tuple[int, bytes]
 """The position of an entry, and its line of JSON."""
@@ -97,7 +97,7 @@ PositionedLine = tuple[int, bytes]
 class JournalTail:
     """The lines of the last entries of a run, whether or not they are on the disk; any thread may read them.
 
-    The positions are those of the journal. One that the disk refused has one, too.
+    Positions are those of the journal; an entry that the disk refused has one, too.
     """
 
     def __init__(self, most: int = MAX_ENTRIES, most_bytes: int = MAX_BYTES) -> None:

@@ -63,7 +63,7 @@ class JournalPen:
         return self._stepped(*told) if isinstance(told, Stepped) else self._jumped(told)
 
     def keyframe(self, *, gone: int = 0) -> list[bytes]:
-        """Return the behaviour's state as a keyframe, or as a gap if entries are `gone` before it; empty if unknown."""
+        """Return the behaviour's state as a keyframe, or as a gap after `gone` lost entries; empty if it is unknown."""
         if self._project is None or self._snapshot is None:
             return []
         said = {"lost": gone} if gone else {}

@@ -23,7 +23,7 @@ from lumen.talk.hearing import MATCHER
 from lumen.upkeep.threads import WatchedThread
 
 MAX_WAITING = 20_000
-"""The most entries that wait for the disk; further ones are lost, and counted."""
+"""The greatest number of entries that may wait for the disk; further ones are lost, and counted."""
 WRITE_PERIOD = 0.25
 """The longest delay before a step without commands is written [s]; other steps are written at once."""
 SYNC_PERIOD = 0.5
@@ -50,8 +50,8 @@ class JournalWriter:
     count from 0.
 
     If the disk refuses, or is too slow for `MAX_WAITING` entries, entries are lost: `lost` counts them, a gap marks
-    them in the journal, and `trouble` is the reason. If it is `rehearsed`, a step
-    waits for a slow disk, and a power cut may lose the last entries.
+    them in the journal, and `trouble` is the reason. If the run is `rehearsed`, a step waits for a slow disk, and a
+    power cut may lose the last entries.
     """
 
     def __init__(self, folder: JournalFolder | None, *, story: str = "", rehearsed: bool = False) -> None:

@@ -16,8 +16,9 @@ LINES_PER_FRAME = 1000
 def redact(file: Path, person: PersonName) -> int:
     """Remove a visitor's name from a file, which is replaced as a whole; return how many entries named them.
 
-    Unreadable content is deleted, because it may hold the name. The file keeps its time, so it is not kept longer.
-    Raises ModuleError if it cannot be replaced.
+    Unreadable content is deleted, because it may hold the name; a file that is unreadable as a whole counts as one
+    entry, unless it is empty. The file keeps its time, so it is not kept longer. Raises ModuleError if it can't be
+    replaced or deleted.
     """
     try:
         content = read_journal(file)
