@@ -35,7 +35,7 @@ class Entry(NamedTuple):
 
     name: str
     row: int
-    """The row of a table of answers to which it belongs."""
+    """The number of its row in a table of answers; 0 for phrases."""
     strength: int
     """The number of its words that are not fillers."""
     alone: bool
@@ -59,7 +59,7 @@ class Find(NamedTuple):
     caught: tuple[tuple[str, Any], ...]
     """The values that its slots caught, each after the slot's name."""
     strength: int
-    """The strength of its form, and the words that count of what its slots caught."""
+    """The strength of its form, plus those of the list entries that its slots caught."""
 
 
 class ReadSentence:
@@ -119,10 +119,10 @@ class ReadSentence:
         return None
 
     def is_asked(self, find: Find) -> bool:
-        """Return whether a find is in a question: its clause begins with a question word, or has one of
-        `questions_anywhere`.
+        """Return whether a find is in a question.
 
-        A form with a question word of its own is not part of a question.
+        Its clause then begins with a question word, or has one of `questions_anywhere`. A form with a question word of
+        its own is not part of a question.
         """
         if find.entry.question:
             return False
@@ -299,7 +299,7 @@ class Finder:
                 return
 
     def _catch(self, reading: ReadSentence, slot: Slot, start: int, *, last: bool) -> Iterator[tuple[int, Any, int]]:
-        """Yield the end, the value and the words that count of each catch of a slot, the longest first."""
+        """Yield the end, value and strength of each catch of a slot: the longest first, but of `text` the shortest."""
         match slot.type:
             case "name" | "name?":
                 careful, small = slot.type == "name?", self.speech.small

@@ -91,19 +91,19 @@ def _pieces(word: str) -> Iterator[str]:
 
 @lru_cache(maxsize=512)
 def padded(text: str) -> str:
-    """Return the compared words between blanks, so that `" no " in " i know "` is false; empty for no words."""
+    """Return the folded words with a blank around each, so that `" no " in " i know "` is false; empty for no words."""
     found = folded(text)
     return f" {' '.join(found)} " if found else ""
 
 
 def words(text: str) -> list[str]:
-    """Return the words of a text as they are written, without punctuation."""
+    """Return the words of a text, as far as it is examined, as they are written, without punctuation."""
     cleaned = (word.strip("'’ʼ‘`´") for word in text[:MAX_TEXT_EXAMINED].translate(WORDS_ONLY).split())
     return [word for word in cleaned if word]
 
 
 def after(text: str, phrase: str) -> str:
-    """Return what follows the phrase in the text, without the blanks and punctuation around it; "" without it."""
+    """Return what follows the phrase in the text, without blanks and punctuation around it; "" if it has no phrase."""
     text, sought = text[:MAX_TEXT_EXAMINED], list(folded(phrase[:MAX_TEXT_EXAMINED]))
     found: list[str] = []
     ends: list[int] = []

@@ -43,8 +43,8 @@ class RowOrder(NamedTuple):
 
 
 def said_in(event: Any) -> str:
-    """Return the text of an event in the form that expressions see, or an empty text."""
-    try:  # each row asks: faster than to look at the types first
+    """Return the text of an event, which is given as expressions see it; empty if it has none."""
+    try:  # this runs for each row, and is faster than checking the types first
         text = event["data"]["result"]
     except (KeyError, TypeError):
         return ""
@@ -171,7 +171,7 @@ class Hearing:
             yield from self.finder.slotted(reading).get(name, ())
 
     def entry(self, path: str, context: Mapping[str, Any]) -> Any:
-        """Return the phrases at a path of the context, as `context.round.entry.right`; None if there are none."""
+        """Return the phrases at a path of the context, such as `context.round.entry.right`; None if there are none."""
         table = value_at(context, path.split(".")[1:])
         return table if isinstance(table, str | list | tuple | Mapping) else None
 
@@ -189,8 +189,9 @@ class Hearing:
 
 
 def dropped(reading: ReadSentence, find: Find, way: str, asks: bool) -> Dropped:
-    """Return why a find does not count for a row of that `way`; `asks` is true if a row of the state accepts questions
-    for its name.
+    """Return why a find does not count for a row of that `way`; empty if it counts.
+
+    `asks` is whether a row of the state accepts questions for the find's name.
     """
     if reading.negation(find) is not None:
         return "" if way == "not" else "negated"

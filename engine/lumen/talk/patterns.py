@@ -13,7 +13,7 @@ from typing import NamedTuple
 from lumen.talk.folding import folded
 
 MAX_FORMS = 200
-"""The most forms of a pattern."""
+"""The greatest number of forms of a pattern; one with more is not valid."""
 
 _SLOT = re.compile(r"\{([A-Za-z_]\w*\??)(?::([A-Za-z_]\w*))?\}")
 _SIGNS = re.compile(r"[()\[\]{}|]")
@@ -72,7 +72,7 @@ def read_pattern(phrase: str) -> tuple[Form, ...]:
 
 
 def written_forms(phrase: str) -> Iterator[tuple[str | Slot, ...]]:
-    """Yield the forms of a phrase as written, texts and slots in order; the phrase if it is no valid pattern."""
+    """Yield the forms of a phrase as written, texts and slots in order; the phrase itself if it is no valid pattern."""
     try:
         texts, slots = _expanded(phrase)
     except PatternError:
