@@ -15,7 +15,7 @@ class Bell:
         self._woke = -SPACING
 
     def ring(self) -> None:
-        """End the sleep."""
+        """End the current sleep, or else the next one."""
         self._rung.set()
 
     def sleep(self, seconds: float) -> None:

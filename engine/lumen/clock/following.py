@@ -56,7 +56,10 @@ class FollowingClock:
         self._bell.sleep(max(0.0, (until - self.now()) / self._rate))
 
     def follow(self, whose: str, robots: float, at: float) -> None:
-        """Note that the robot's clock showed `robots` [s] at `at` [s, monotonic]; `whose` is the robot's session."""
+        """Note that the robot's clock showed `robots` [s] at `at` [s, monotonic]; `whose` is the robot's session.
+
+        A report that is not newer than the last one of that session is ignored.
+        """
         last = self._heard[-1] if self._heard else None
         if last and whose == self._whose and at <= last[0]:
             return

@@ -38,7 +38,7 @@ class PaceMeter:
 
 
 MAX_ARREARS = 0.25
-"""Delay that the clock makes up for [s], so that a tick delayed by the machine costs no time."""
+"""The greatest delay that the clock makes up for [s], so that a tick delayed by the machine costs no time."""
 
 
 class SimulatedClock:
@@ -84,7 +84,7 @@ class SimulatedClock:
         return min(until, self._now + max(0.0, self._monotonic() - self._due) * self.speed)
 
     def wait(self, until: float) -> None:
-        """Advance the world to `until` [s], and sleep until that time is due."""
+        """Advance the world to `until` [s], and sleep until that time is due, or until `hurry`."""
         until = to_the_nanosecond(until)
         dt = until - self._now
         if dt <= 0:

@@ -43,7 +43,7 @@ class VirtualClock:
         self.wait(self._now + dt)
 
     def wait(self, until: float) -> None:
-        """Let time pass until `until` [s], to the nanosecond."""
+        """Let time pass until `until` [s], to the nanosecond, and wake sleepers on the way; ignore a past time."""
         need_number(until, "the time to wait for", finite=False)
         until = to_the_nanosecond(until)
         while (sleeper := self._first(until)) is not None:
