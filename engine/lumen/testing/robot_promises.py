@@ -37,7 +37,7 @@ def test_an_answer_is_an_end(trial: RobotTrial) -> None:
 
 
 def test_what_it_can_not_do_is_an_answer(trial: RobotTrial) -> None:
-    """A posture that no body has is an error that names it, and no exception."""
+    """A posture that no body has is answered by an error, not by an exception."""
     trial.start("a", Posture("Handstand"))
     [end] = trial.answered("a")
     if end != "error":
