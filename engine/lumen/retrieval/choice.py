@@ -18,7 +18,7 @@ RIDGE = 1.0
 NONE_RIDGE = 1e-3
 """The ridge penalty on the utility of “none”."""
 STEPS, ENOUGH = 60, 1e-6
-"""The most Newton steps, and the size of a step below which it stops."""
+"""The greatest number of Newton steps, and the size of a step below which the method stops."""
 LONGEST = 3.0
 """The longest step: far from the solution, Newton's method overshoots."""
 

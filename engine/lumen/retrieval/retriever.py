@@ -29,7 +29,7 @@ class FoundAnswer(NamedTuple):
 
 
 class Retriever:
-    """The passages that one robot may say in one language on one day.
+    """The passages that one robot (by default: any) may say in one language on one day (by default: any).
 
     `names` lists them in the order of the features' rows.
     """
@@ -60,8 +60,9 @@ class Retriever:
         return self._extract(question) if self._extract else np.zeros((0, 1), np.float32)
 
     def rank(self, question: str, weights: Weights) -> Ranked:
-        """Return the passage that most probably answers the question, even if that is improbable; `""` without
-        passages.
+        """Return the passage that most probably answers the question, even if that is improbable.
+
+        Its name is empty if there are no passages.
         """
         of_each = self._probabilities(self.features(question), weights)
         row = int(of_each.argmax()) if self.names else -1

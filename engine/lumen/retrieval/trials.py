@@ -45,7 +45,7 @@ def outcome(found: Sequence[Judged], least: float) -> AnswerRates:
 
 
 def calibrate(samples: Sequence[Sample], max_wrong: float = MAX_WRONG) -> Weights:
-    """Fit weights to these questions, with the least probability that gives the most right answers of held-out folds.
+    """Return weights fitted to these questions, with the threshold that gives the most right answers in held-out folds.
 
     At most `max_wrong` of the questions, a share, may be answered wrongly.
     """
