@@ -20,7 +20,7 @@ def connect(url: str, project: Project | None = None, *, on_refused: OnRefused |
     `amqp://USER:PASSWORD@HOST:PORT/VHOST` (or `amqps://`) a broker; features may add others. With a project, every body
     is validated against the schema of its route: publishing an invalid one raises BusError; for an invalid one
     received, `on_refused` (key, reason) is called instead of the subscriber. `sender` is the program named in its
-    messages, by default the name of the running file. Raises BusError if there is no such bus, with advice.
+    messages, by default the name of the running file. Raises BusError, with advice, if the bus can't be opened.
     """
     need_text(url, "the address of a bus")
     if project is not None:

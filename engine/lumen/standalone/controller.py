@@ -62,7 +62,7 @@ class Controller(ControllerDefinition):
     def evaluate_batch(
         self, inputs: "Mapping[str, ArrayLike]", previous: Mapping[str, float] | None = None
     ) -> "dict[str, NDArray[np.float64]]":
-        """Return all outputs for inputs of Shape (n,) each: arrays of Shape (n,). Raises as `evaluate` does."""
+        """Return all outputs for inputs of shape (n,) each: arrays of shape (n,). Raises as `evaluate` does."""
         need(inputs, Mapping, "`inputs`", "a map of arrays")
         if previous is not None:
             need_numbers(previous, "`previous`")

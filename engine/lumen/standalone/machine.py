@@ -98,7 +98,7 @@ class Interpreter(Generic[C]):
 
     `observe` is called with every step, in order; it may call `send`. With a virtual clock everything happens within
     `start`, `send` and `clock.advance`; with another clock call `wake` at the time `next_due`. The other options are
-    those of `initial`.
+    those of `initial`. Before `start`, the methods `send`, `wake` and `snapshot` and all properties raise UsageError.
     """
 
     clock: C
@@ -268,22 +268,22 @@ class Interpreter(Generic[C]):
 
     @property
     def done(self) -> bool:
-        """Return True if the machine has ended: it accepts no more events."""
+        """Whether the machine has ended: it accepts no more events."""
         return finished(self.machine, self._now)
 
     @property
     def output(self) -> Any:
-        """Return the output of the final state in which the machine has ended; None before, or without an output."""
+        """The output of the final state in which the machine has ended; None before, or without an output."""
         return deepcopy(self._now.output)
 
     @property
     def configuration(self) -> frozenset[str]:
-        """Return the active states except the root, each by its alias if it has one, otherwise by its path."""
+        """The active states except the root, each by its alias if it has one, otherwise by its path."""
         return self._now.configuration
 
     @property
     def context(self) -> dict[str, Any]:
-        """Return a copy of the context, which the caller may change."""
+        """A copy of the context, which the caller may change."""
         return deepcopy(dict(self._now.context))
 
     def snapshot(self) -> dict[str, Any]:

@@ -40,7 +40,10 @@ class Motion(motions.MotionDefinition):
 
     @classmethod
     def from_dict(cls, data: Mapping[str, Any], name: str = "motion") -> Self:
-        """Return the motion in a dict with the structure of a file, for the default robot; may raise ProjectError."""
+        """Return the motion in a dict with the structure of a file, for the default robot.
+
+        Raises ProjectError if it has mistakes.
+        """
         need_text(name, "the name of a motion")
         need_map(data, "the data of a motion")
         return cls._build(Document(name, data), name, motion_parts(read_files(shipped_root())))
