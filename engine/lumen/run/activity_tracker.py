@@ -73,7 +73,7 @@ class ActivityTracker(Observer):
     def saying(self) -> UnderWay | None:
         """The text that is being said, else None.
 
-        A text that did not come from the behaviour is dropped after its expected duration, as its end is not reported.
+        A text that is not the behaviour's is dropped after its expected duration, because its end is not reported.
         """
         for id, said in tuple(self._speaking.items()):
             if said.seconds is None or self._now() - said.since < said.seconds:

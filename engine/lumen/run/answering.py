@@ -23,7 +23,7 @@ MAX_WAITING_QUESTIONS = 20
 DAY = 86_400.0
 """The length of a day [s]."""
 MAX_QUESTION = 500
-"""The number of characters that are used of the text to explain; the rest is cut off."""
+"""The greatest length of the text to explain [characters]; the rest is cut off."""
 AnswerMaker = Callable[[], dict[str, Any]]
 """A function that returns an answer as JSON data."""
 

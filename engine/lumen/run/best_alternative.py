@@ -24,8 +24,8 @@ _COMPARES = frozenset(("heard", "lookup"))
 def best_alternative(machine: MachineDefinition, snapshot: Snapshot, event: Event) -> Event:
     """Return a `heard` event with the first text that triggers a transition which depends on phrases.
 
-    The event is returned unchanged if it has no alternatives, or no text triggers such a transition. The steps are only
-    tried.
+    The event is returned unchanged if it has no alternatives, or no text triggers such a transition. Steps are only
+    tried, not taken.
     """
     data = event.data
     if event.name != HEARD or not isinstance(data, dict) or not isinstance(data.get("alternatives"), list):

@@ -1,4 +1,4 @@
-"""The claim of a robot's name: a bus has one robot of a name, with one brain and one module of each kind.
+"""The claim of a robot's name: a bus has only one robot of each name, with one brain and one module of each kind.
 
 A process whose robot or part is already there is refused.
 """

@@ -105,7 +105,7 @@ def part_rows() -> tuple[PartRow, ...]:
 
 
 def ordered(found: Iterable[PartRow]) -> list[PartRow]:
-    """Sort rows by phase, then after the row that `after` names, then by name.
+    """Return rows sorted by phase, each after the row that its `after` names, and otherwise by name.
 
     Raises ValueError if rows wait for each other.
     """

@@ -23,7 +23,7 @@ class RequestChecks:
         self._rows = {row.ask: (row, SchemaCheck(row.schema)) for row in REQUESTS}
 
     def valid(self, body: Any) -> OperatorRequest | None:
-        """Return the request that a body is; None if it is not a request, or a field is missing or wrong."""
+        """Return the kind of request in a body; None if it is not a request, or a field is missing or wrong."""
         row, check = self._found(body)
         return row if check and check.fits(body) else None
 

@@ -91,7 +91,7 @@ class DelegatedTracking:
         return self._request({"id": id, "play": name, "bundle": self._project.hash})
 
     def _delegate(self, track: Track) -> None:
-        """Ask the motion module to switch a controller, unless the controller is to be on and moves no joint."""
+        """Ask the motion module to switch a controller, unless it is to switch on one that moves no joint."""
         found = self._project.controllers.get(track.controller)
         if not track.on or (found and found.output_bindings):
             self._request({"track": track.controller, "on": track.on})

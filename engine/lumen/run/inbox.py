@@ -31,7 +31,7 @@ class Inbox:
         self._known, self._robots = set[str](), set[str]()
 
     def listen(self, project: Project) -> None:
-        """Subscribe to the routes of a project: first to new ones, then cancel those that are gone."""
+        """Subscribe to the new routes of a project, then cancel the subscriptions to those that are gone."""
         wanted = {(route.key_for(project.robot), route.event) for route in project.routes.values() if route.event}
         for key, event in sorted(wanted - self._undo.keys()):
             self._undo[key, event] = self._bus.subscribe(key, self._receiver(event))

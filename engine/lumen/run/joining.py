@@ -53,7 +53,7 @@ class JoinedModule:
         self.bus.publish(self.key(route), body)
 
     def subscribe(self, route: str, handler: MessageHandler) -> None:
-        """Call `handler` with each message on a route, on the thread of the bus."""
+        """Call `handler` with each message on a route, on the thread of the bus. Raises BusError if the bus refuses."""
         self.bus.subscribe(self.key(route), handler)
 
     def alive(self) -> None:

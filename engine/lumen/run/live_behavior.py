@@ -116,7 +116,7 @@ class LiveBehavior:
         return self.loop.project
 
     def start(self, language: str = "") -> None:
-        """Enter the initial states."""
+        """Enter the initial states, in `language`, by default the story's, else the project's first."""
         story = self._story
         if story is None:
             prepare(self.project.machine)
@@ -137,7 +137,7 @@ class LiveBehavior:
             self.trace.standing(self.loop.runtime.snapshot)
 
     def plan(self, project: Project, *, now: bool = False, back: bool = False) -> MigrationVerdict:
-        """Return how another bundle would continue from here, or why it can't; nothing changes."""
+        """Return how another bundle would continue from here, or why it can't (`Runtime.plan`); nothing changes."""
         return self.loop.plan(staged(project, self._story), now=now, back=back)
 
     def apply(self, project: Project, plan: MigrationPlan, begun: Callable[[], None] = lambda: None) -> None:

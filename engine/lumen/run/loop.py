@@ -125,7 +125,7 @@ class Rescuer(Protocol):
     def rescue(self, error: Exception) -> Sequence[Command] | None:
         """Switch to another bundle; return the commands of the switch.
 
-        Return None without a rescue. If all rescuers do so, the fault ends the run.
+        Return None if that is impossible. If no rescuer can switch, the fault ends the run.
         """
         ...
 
@@ -184,7 +184,7 @@ class BehaviorLoop:
         timezone: str = "",
         context: Mapping[str, Any] | None = None,
     ) -> None:
-        """Subscribe, and enter the initial states; `context` overrides initial values of the context."""
+        """Subscribe, and enter the initial states; the options are those of `Runtime.start`."""
         self._last = self.clock.now()
         self._listen(self.project)
         first = self.runtime.start(self._last, language=language, epoch=epoch, timezone=timezone, context=context)
@@ -254,7 +254,7 @@ class BehaviorLoop:
         self._perform(self.runtime.take(step), self._last)
 
     def quiet_until(self, now: float) -> float:
-        """Return until when nothing happens without an input from outside [s]; `now` if something may happen now."""
+        """Return the time until which nothing happens without an outside input [s]; `now` if something may at once."""
         pending = self._events or self.performer.events or not (self.inbox.empty and self.performer.questions.empty)
         pending = pending or not self.board.empty
         if pending or self.tracking.on or self.performer.navigator.busy:
@@ -268,7 +268,7 @@ class BehaviorLoop:
         self.performer.navigator.leap(now)
 
     def plan(self, project: Project, *, now: bool = False, back: bool = False) -> MigrationVerdict:
-        """Return how another bundle would continue from here, or why it can't; nothing changes."""
+        """Return how another bundle would continue from here, or why it can't (`Runtime.plan`); nothing changes."""
         return self.runtime.plan(project, self._last, now=now, back=back)
 
     def apply(self, project: Project, plan: MigrationPlan) -> None:

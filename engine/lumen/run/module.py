@@ -19,7 +19,7 @@ from lumen.upkeep.drops import DropLog
 from lumen.upkeep.threads import WatchedThread
 
 MAX_WAITING_MESSAGES = 1_000
-"""The number of messages that wait for a module; one more drops the oldest."""
+"""The number of messages that may wait for a module; one more drops the oldest."""
 MAX_REASONS = 50
 """The number of different troubles that are reported until the module works again."""
 KEEP_DAYS = 30.0

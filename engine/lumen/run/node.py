@@ -178,7 +178,7 @@ class Node:
         self._begin(self.now)
 
     def run(self, period: float | None = None) -> float:
-        """Tick until it is over, or for `period` [s] if that is not None; return how long it ran [s]."""
+        """Tick until it is over, for at most `period` [s] (None: no limit); return how long it ran [s]."""
         with closing(GcScheduler()) as garbage:
             return live(self, period, garbage)
 
@@ -226,7 +226,7 @@ class Node:
         return until - self.now
 
     def doze(self, rest: float) -> int:
-        """Sleep for at most `rest` [s] and NAP, until woken, if the clock can; return the number of ticks slept."""
+        """Sleep until woken, for at most the lesser of `rest` and NAP, if the clock can; return the ticks slept."""
         if self._dozes is None or rest < 2 * TICK_PERIOD:
             return 0
         return int((self._dozes.doze(self.now + min(rest, NAP) - TICK_PERIOD) - self.now) / TICK_PERIOD + ROUNDING)

@@ -27,7 +27,7 @@ ASK_ROUTE, ANSWER_ROUTE = "ask", "answer"
 STRICT = Weights((2.5, 15.0, 5.5), none=6.5, least=0.9)
 """The weights for a language without trial questions in the project, similar to those of the shipped examples."""
 MAX_ANSWERS = 100
-"""The number of answers that wait for a tick; one more drops the oldest."""
+"""The number of answers that may wait for a tick; one more drops the oldest."""
 MAX_PASSAGES = 3
 """The number of passages that a language model receives."""
 FILLER_AFTER = 1.5

@@ -35,7 +35,7 @@ class Reached(NamedTuple):
 
 
 def reach_exhibition(project: str | None, bus: str | None, robot: str = "") -> Reached:
-    """Connect to the exhibition of a project (default: the one here or above); `bus` may be its bus's address.
+    """Connect to the exhibition of a project (default: the one here or above); `bus` is its bus's address, if known.
 
     Of several robots it is that of `robot`; by default the first one that runs here, else the first. Raises UsageError
     for an unknown robot, BusError, with advice, if no exhibition is found.

@@ -22,7 +22,7 @@ from lumen.statechart import Snapshot, Step
 
 NOT_ASKED = "no running exhibition was asked"
 MAX_FILES = 8
-"""The number of a run's files, up to the requested moment, that are read; each has some hours."""
+"""The number of a run's files, up to the requested moment, that are read; each covers some hours."""
 
 
 def answer_from_journal(
@@ -31,7 +31,7 @@ def answer_from_journal(
     """Return an answer from the last run that began before `at` (ISO 8601; None for now).
 
     `question`, `what` and `at` are those of `answering.answer`. `why` is the reason why no running exhibition was
-    asked. Raises UsageError, with that reason or advice, if the journal has no answer.
+    asked. Raises UsageError, with that reason or advice, if the journal has no answer; ValueError if `at` is no time.
     """
     root = running_project(project)
     robot = one_robot(root, robot)
@@ -45,7 +45,8 @@ def why(what: str = "", path: str | None = None, at: str | None = None) -> dict[
     """Return why something happened in the last run of a project, as `lumen why --format json` prints it.
 
     `path` is the project's folder, by default the one here or above; `at` is an ISO 8601 time: only what happened until
-    then counts. Raises UsageError, with advice, if it did not happen or there is no journal.
+    then counts. Raises UsageError, with advice, if it did not happen or there is no journal; ValueError if `at` is no
+    such time.
     """
     return answer_from_journal(path, WHY.ask, what, at, NOT_ASKED)
 

@@ -83,7 +83,7 @@ class Regulation:
 
 
 def whole_fields(project: Project) -> frozenset[RouteField]:
-    """Return the message fields with bindings that hold only integers, by their schemas."""
+    """Return the message fields that are bound to outputs, and by their schemas hold only integers."""
     bound = {
         (signal.route, *signal.path)
         for controller in project.controllers.values()

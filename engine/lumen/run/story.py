@@ -76,7 +76,7 @@ class StoryFailure(NamedTuple):
     expected: str
     """The expectation, in words."""
     was: str
-    """The event or state instead, in words."""
+    """What happened instead, in words."""
 
     def __str__(self) -> str:
         return f"step {self.step} of `{self.story}`: {self.what}"
@@ -206,7 +206,8 @@ class StoryPlayer(Observer):
     def tick(self, now: float) -> None:
         """Do every step that is possible at `now` [s].
 
-        After an action the next tick follows, so that the behaviour receives it before an expectation is tested.
+        After an action, the next step waits for the next tick, so that the behaviour receives the action before an
+        expectation is tested.
         """
         for monitor in sorted(self._monitors, key=lambda monitor: monitor.deadline):
             self._violated(monitor.elapse(now))
@@ -217,7 +218,7 @@ class StoryPlayer(Observer):
             self._since, self._awaited = now, None
 
     def quiet_until(self, now: float) -> float:
-        """Return until when the player does nothing [s], unless an expectation is met earlier."""
+        """Return the time until which the player does nothing [s], unless an expectation is met earlier."""
         if self.finished:
             return now
         return min(self._quiet_until(now), *(monitor.deadline for monitor in self._monitors), inf)

@@ -38,7 +38,7 @@ class Verdict:
     coverage: Coverage | None = None
     """The coverage of the stories; None if it is not measured."""
     wanted: float = 0.0
-    """The least coverage [%]."""
+    """The required coverage [%]."""
     explored: Explored | None = None
     """The result of the exploration; None without an exploration."""
     took: float = 0.0

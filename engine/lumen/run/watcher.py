@@ -49,7 +49,7 @@ class SavedFiles(NamedTuple):
 
 
 class GivenFiles(NamedTuple):
-    """Files from elsewhere than the project's folder."""
+    """Files that are not from the project's folder."""
 
     files: WatchedFiles
     asked: object
@@ -111,7 +111,7 @@ class FileWatcher(Generic[T]):
         self._hint.set()
 
     def give(self, files: WatchedFiles, what: object) -> None:
-        """Check files from elsewhere than the folder; `what` is returned with the result."""
+        """Check files that are not from the folder; `what` is returned with the result."""
         self._asked.put(GivenFiles(files, what))
         self._hint.set()
 

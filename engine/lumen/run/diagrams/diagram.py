@@ -33,7 +33,7 @@ class Diagram:
     boxes: tuple[StateBox, ...]
     """The outermost boxes."""
     arrows: tuple[tuple[str, str], ...] = field(default=())
-    """Pairs of boxes' ids, each once, in order."""
+    """The ids of the boxes from which and to which each arrow leads; each pair once, in order."""
 
     def all(self) -> Iterator[StateBox]:
         """Yield every box, outer ones first."""

@@ -1,4 +1,4 @@
-"""The forgetting of people by features, by the rows of their manifests; and the report about it."""
+"""Features that forget a person, by the rows of their manifests, and the report about it."""
 
 import logging
 from collections.abc import Callable, Iterable, Iterator
@@ -12,7 +12,7 @@ from lumen.language.routes import Carried, Direction, Route
 
 
 class ForgottenPlace(NamedTuple):
-    """A file or another place."""
+    """A file, or another place, that had or has data about the person."""
 
     where: str
     what: str

@@ -71,7 +71,10 @@ class OwnModulePart(Part):
 
     @property
     def status(self) -> dict[str, Any]:
-        """Its state for `lumen status`: `here`, `lost` or `awaited`, since when, why it was lost, and its restarts."""
+        """Its state for `lumen status`: `here`, `lost` or `awaited`, since when, and why it was lost.
+
+        A program that is started here also has the number of its restarts.
+        """
         state = "lost" if self._lost_at is not None else "here" if self._heard >= 0 or self._running else "awaited"
         told = {"module": self.name, "state": state, "since": iso_time(self._since), "reason": self._reason or None}
         return {**told, "restarts": max(0, self._starts - 1)} if self._process else told

@@ -57,7 +57,7 @@ class Part:
         """Called with an event of a robot in this process whose brain is in another process or missing."""
 
     def quiet_until(self, now: float) -> float:
-        """Return until when nothing happens in the part without an input [s]; `now` if something may happen at once."""
+        """Return the time until which nothing happens here without an input [s]; `now` if something may at once."""
         return inf if self.patient else now
 
     def leap(self, now: float) -> None:

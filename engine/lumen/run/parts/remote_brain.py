@@ -73,7 +73,7 @@ class RemoteBody:
 class RemoteHold(Observer):
     """Predicts whether a robot in another process refuses to move because a person stopped it.
 
-    `stopped` returns the state that the robot's process publishes, which may be a second old. In doubt a command is
+    `stopped` returns the state that the robot's process publishes, which may be a second old. If in doubt, a command is
     sent, and the robot decides. A touch of the robot's head allows movement again.
     """
 

@@ -57,7 +57,7 @@ class RunDirectory:
         self._bus = ""
 
     def begin(self, project: Project, files: Mapping[str, bytes]) -> None:
-        """Store the files with which the exhibition starts.
+        """Store the files with which the exhibition starts, and delete stored ones that are no longer needed.
 
         If no files were good so far, they count as the last good ones.
         """

@@ -68,7 +68,7 @@ def preview(old: Project, new: Project, bound: int, tell: Callable[[int, int], N
 
 
 def outcome_of(old: Project, new: Project, snapshot: Snapshot) -> MigrationOutcome:
-    """Return the outcome of a reload at this moment."""
+    """Return the outcome of a reload from a snapshot."""
     verdict = plan(old, new, snapshot, at=snapshot.at)
     before = _inner(old, snapshot)
     if isinstance(verdict, MigrationPlan):

@@ -135,7 +135,7 @@ class Reloader:
         return self._behavior.loop.project
 
     def begin(self, news: Iterable[ReloadReport]) -> None:
-        """Start the probation of the running bundle, and report `news`, the reloads that this start was."""
+        """Start the probation of the running bundle, and send `news`, the reports on this start as a reload."""
         self._records.begin(self._running.hash)
         for report in news:
             self._notifier.tell(report)

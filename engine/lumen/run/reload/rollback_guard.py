@@ -48,7 +48,7 @@ class RollbackGuard:
         return True
 
     def left(self, now: float) -> float | None:
-        """Return the rest of the probation [s]; None outside of a probation."""
+        """Return the remaining time of the probation [s]; None if there is no probation."""
         return None if self._until is None else max(0.0, round(self._until - now, 3))
 
     def rescue(self, error: Exception) -> Sequence[Command] | None:

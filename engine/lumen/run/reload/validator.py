@@ -78,7 +78,7 @@ class Validation:
 
 
 class BundleValidator:
-    """A checker of files against the bundle that `running` returns; it is called on threads that may take long.
+    """A checker of files against the bundle that `running` returns; call it on threads that need not answer soon.
 
     `worker` loads files and plays stories in another process. Only one thread at a time uses it, because it plays the
     stories of the project that it loaded last.

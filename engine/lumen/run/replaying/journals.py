@@ -114,7 +114,7 @@ def listed(root: Path, robot: str = "") -> list[tuple[Path, JournalHeader]]:
 
 
 def until(entries: Iterable[RecordedEntry], text: str) -> Iterator[RecordedEntry]:
-    """Yield the entries up to a time of day at the exhibition, `14:03` or `14:03:20`.
+    """Yield the entries up to the first time of day `14:03` or `14:03:20` at the exhibition.
 
     Raises UsageError for other texts.
     """

@@ -51,7 +51,7 @@ class ReplayReport:
     differ: list[ReplayDifference] = field(default_factory=list)
     """The first difference of each visit."""
     unknown: dict[str, int] = field(default_factory=dict)
-    """The numbers of entries that could not be compared, by the reason."""
+    """The numbers of entries (with other files: of visits) that could not be compared, by the reason."""
 
     def to_json(self) -> dict[str, Any]:
         """Return the report as `lumen replay --format json` prints it."""
