@@ -1,7 +1,7 @@
 """Reads the parameters of commands from the bus, and checks the values that a body can perform.
 
 Each `read_…` returns a command from its parameters, and each `check_…` returns nothing. Both raise BadCommandError for
-a command that no robot of that body can perform.
+a command that no robot of that body can perform, `read_…` also for missing or wrong parameters.
 """
 
 import json
@@ -31,7 +31,7 @@ AIM_SPEED, POSTURE_SPEED = 0.3, 0.5
 """Speeds of aims and postures as fractions of the maximum, if a command from the bus gives none."""
 
 RECORDING_DURATION, MAX_RECORDING_DURATION = 5.0, 20.0
-"""The default duration of a recording, as in 2015, and the longest [s]: a message holds 1 MiB."""
+"""The default duration of a recording, as in 2015, and the longest [s], because a message holds at most 1 MiB."""
 
 MAX_JUDGES = 256
 """The number of compiled schemas of added verbs' arguments that are cached."""

@@ -54,7 +54,7 @@ class CommandQueries:
     def _request(self, message: Message, method: str) -> None:
         """Answer `cancel` or `outcome` for the command with the `id` in the parameter.
 
-        An unknown command counts as cancelled afterwards, because it may still arrive.
+        A command that is cancelled before it is known counts as cancelled afterwards, because it may still arrive.
         """
         id = own_id(message.body.get("parameter"))
         if not id:

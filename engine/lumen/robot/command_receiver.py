@@ -139,7 +139,7 @@ class CommandReceiver:
 
     @property
     def waiting(self) -> bool:
-        """True while commands have arrived that are not begun."""
+        """Whether commands have arrived that have not begun."""
         return bool(self._received or self._aims)
 
     def begin(self) -> None:

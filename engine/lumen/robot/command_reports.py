@@ -33,7 +33,7 @@ class CommandRecord:
     reason: str = ""
     """Why the command failed, or which joint missed its goal; else empty."""
     result: Mapping[str, Any] | None = None
-    """The result of a verb of a feature."""
+    """The result of a verb of a feature; None if it has none."""
     parts: frozenset[str] = frozenset()
     """The parts of the body that the command owns."""
     takes: float = 0.0

@@ -14,7 +14,7 @@ STOP_BUTTONS = {
 
 
 def danger(pressed: Mapping[str, bool], distances: Iterable[float]) -> str:
-    """Return why a robot must not walk now; empty if nothing is in the way.
+    """Return why a robot must not walk now; empty if it may.
 
     `pressed` has the tactile sensors, `distances` what the sonars measure [m].
     """

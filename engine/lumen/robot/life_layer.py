@@ -48,8 +48,8 @@ class LifeLayer:
     """The offset of each joint from the target of the commands [rad; hands 0..1].
 
     It depends only on the seed, and on the times and calls since the beginning. Its state is the style, the last
-    cause of attention, the time of the last aim of the head, the last text and its time, the times since when parts
-    are free, and the present offsets of the joints. `offsets` has the last values; any thread may read it.
+    cause of attention, the time of the last aim of the head, the last text and its time, the time at which each part
+    became free, and the present offsets of the joints. `offsets` has the last values; any thread may read it.
     """
 
     def __init__(self, body: Body, seed: int = 0) -> None:

@@ -7,7 +7,7 @@ from lumen.ports import Aim, Live, Reading, RobotCommand, Sense
 
 
 class NoRobot:
-    """Answers every command with an error; senses nothing."""
+    """Answers every command with an error, except aims and life styles, which have no answer; senses nothing."""
 
     def __init__(self) -> None:
         self._answers: list[Event] = []

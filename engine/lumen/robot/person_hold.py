@@ -53,7 +53,10 @@ class PersonHold:
         self._touched, self._rests = False, False
 
     def stop(self, by: str, since: datetime | None = None) -> None:
-        """Keep the robot still from now on; each call sends the behaviour a `stop` event."""
+        """Keep the robot still; each call sends the behaviour a `stop` event.
+
+        `since` (UTC) is by default now. If the robot is stopped already, the first person and time stay.
+        """
         self._touched = False
         if self.stopped is None:
             self._change(StoppedBy(by, since or datetime.now(UTC)))

@@ -58,7 +58,7 @@ class _Skill(_Lasting):
 
 
 class _Playing(_Lasting):
-    """A motion; its words and sounds become events at their times."""
+    """A motion; its words, sounds and skills become events at their times."""
 
     def __init__(self, until: float, begin: float, prompter: CueNotifier) -> None:
         super().__init__(until)

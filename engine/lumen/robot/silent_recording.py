@@ -7,7 +7,7 @@ from lumen.robot.sense_codec import RECORDING_RATE, recording_body
 
 
 class SilentRecording:
-    """Passes silence of the command's duration to `notice` at `until` [s]; nothing if it is cancelled."""
+    """Passes silence of the command's duration to `notice` at `until` [s]; if cancelled, passes nothing."""
 
     def __init__(self, command: Record, until: float, notice: EventSink) -> None:
         self._command, self._until, self._notice = command, until, notice

@@ -1,4 +1,4 @@
-"""A robot in another process: the process with the body hosts it on the bus, that with the brain sees a `Robot`.
+"""A robot in another process: the process with the body hosts it on the bus, and the brain's process sees a `Robot`.
 
 `RobotHost` is the body's side, `RemoteRobot` and `RemoteHall` are the brain's and the visitor's.
 """
