@@ -28,7 +28,7 @@ def standing(body: Body) -> tuple[str, ...]:
 
 
 def lies(posture: str) -> bool:
-    """Return True for a posture on the floor, on the back or belly."""
+    """Return whether the robot lies on its back or belly in a posture."""
     return posture.startswith("Lying")
 
 

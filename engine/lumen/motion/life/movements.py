@@ -121,9 +121,9 @@ class Attention(NamedTuple):
     """A direction that has the robot's attention."""
 
     yaw: float
-    """To the left [rad, of the head]."""
+    """The yaw of the head, to the left [rad]."""
     pitch: float
-    """Down [rad, of the head]."""
+    """The pitch of the head, down [rad]."""
     at: float
     """When it got the robot's attention [s]."""
     latest: float = -inf
