@@ -47,7 +47,7 @@ class Polynomial(NamedTuple):
 
 
 class Bezier(NamedTuple):
-    """A cubic Bezier curve: `x1` and `x2` place its inner points in time, from 0 to 1; `a0` to `a3` are angles [rad]."""
+    """A cubic Bezier curve: `x1` and `x2` place its inner points in time (0 to 1); `a0` to `a3` are angles [rad]."""
 
     start: float
     duration: float
