@@ -36,8 +36,8 @@ _FLOATS, _INTEGERS = frozenset((float,)), frozenset((int,))
 def copied(body: Any, depth: int = MAX_BODY_DEPTH) -> Any:
     """Return a copy that shares no container with `body`; tuples become lists, as in JSON.
 
-    Raises BusError for what JSON can't express: other types, keys that are not strings, NaN and infinity, deep nesting;
-    and for integers beyond ±2**63.
+    Raises BusError for what JSON can't express: other types, keys that are not strings, NaN and infinity; and for
+    integers beyond ±2**63 and nesting deeper than `depth`.
     """
     kind = type(body)
     if kind is dict and depth:

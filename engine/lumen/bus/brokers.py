@@ -43,11 +43,11 @@ class Probe(Protocol):
         ...
 
     def served(self, key: str, route: Route) -> QueueStatus:
-        """Return how a route's queue is read."""
+        """Return how many messages wait in a route's queue, and how many programs read it."""
         ...
 
     def misdeclared(self) -> Iterator[str]:
-        """Yield what is wrong with the queues of unusable messages."""
+        """Yield what is wrong with the declarations of the queues for unusable messages."""
         ...
 
     def close(self) -> None:

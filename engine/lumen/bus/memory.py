@@ -231,7 +231,10 @@ class MemoryBus(Bus):
             self.publish(message.reply_to, body, correlation_id=message.correlation_id)
 
     def close(self) -> None:
-        """Deliver what was published, then cancel this handle's subscriptions; other handles stay open."""
+        """Deliver what was published, then cancel this handle's subscriptions; other handles stay open.
+
+        Wait at most HANDLER_TIMEOUT for a subscriber that is still working on another thread.
+        """
         if self._closed:
             return
         self._closed = True
