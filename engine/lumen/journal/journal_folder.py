@@ -44,7 +44,7 @@ class JournalFolder:
         return 0
 
     def open(self, header: JournalHeader) -> BinaryIO:
-        """Create and return a file with this header; it replaces one of this run without entries. Raises OSError."""
+        """Create and return a file with this header, in place of one of this run without entries. Raises OSError."""
         private_folder(self.folder)
         name = f"{header.first:012d}-{file_stamp(header.began)}-{header.run[:8]}{JOURNAL_SUFFIX}"
         handle = os.open(self.folder / name, os.O_WRONLY | os.O_CREAT | os.O_TRUNC | os.O_APPEND | NO_LINK, 0o600)

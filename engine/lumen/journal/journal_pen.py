@@ -17,7 +17,7 @@ KEYFRAME_PERIOD = 60.0
 """The time between two keyframes [s of the exhibition]; a return to the waiting state also writes one."""
 
 LARGE = 50_000
-"""A keyframe larger than this [bytes] is written only after entries of the same size.
+"""A keyframe larger than this [bytes] is written only after entries of at least the same size in total.
 
 So a behaviour with much memory that returns to its waiting state with each step does not fill the disk.
 """

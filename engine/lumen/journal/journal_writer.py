@@ -29,7 +29,7 @@ WRITE_PERIOD = 0.25
 SYNC_PERIOD = 0.5
 """The shortest time between two syncs to the disk [s]."""
 MAX_LINES, MAX_LINES_BYTES = 1000, 2_000_000
-"""The most entries in one frame, and the size after which no more are added [bytes]."""
+"""The greatest number of entries in one frame, and the size after which no more are added [bytes]."""
 FILE_BYTES = 1_000_000
 """A file larger than this is ended, and a new one begun [bytes]."""
 RETRY_PERIOD = 5.0
