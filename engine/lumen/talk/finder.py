@@ -9,7 +9,7 @@ from lumen.talk.patterns import Form, Slot, forms
 from lumen.talk.speech import Speech
 
 NEAR = 5
-"""The most words, not counting fillers, between a negation and the words that it negates."""
+"""The greatest number of words, not counting fillers, between a negation and the words that it negates."""
 NEAR_AFTER = 2
 """The same for a negation that follows the words."""
 MAX_NAME_WORDS = 4
@@ -17,7 +17,7 @@ _ENDS, _SLOTS = 0, 1
 """Keys of a node of the trie besides words: for the forms that end there, and for the slots that follow."""
 _MAX_FINDS = 500
 _MAX_WALKS = 10_000
-"""The most steps of a search in one text: patterns with several slots fit a long text in very many ways."""
+"""The greatest number of steps of a search in one text: patterns with several slots fit a long text in many ways."""
 
 _Node: TypeAlias = dict[Any, Any]
 Languages: TypeAlias = Mapping[str, Sequence[str]]

@@ -96,7 +96,7 @@ class Hearing:
         return found
 
     def caught(self, number: int, event: Any, context: Mapping[str, Any], language: str) -> dict[str, Any]:
-        """Return `heard` of a row: the text, the phrase as it was said, the answer, and the slots."""
+        """Return the value of `heard` for a row: the text, the phrase as it was said, the answer, and the slots."""
         text = said_in(event)
         order = self.order(number, text, context)
         find = next((taken.find for taken in (*order.first, *order.late) if taken.number == number), None)
