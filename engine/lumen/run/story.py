@@ -76,7 +76,7 @@ class StoryFailure(NamedTuple):
     expected: str
     """The expectation, in words."""
     was: str
-    """What happened instead, in words."""
+    """The actual outcome, in words."""
 
     def __str__(self) -> str:
         return f"step {self.step} of `{self.story}`: {self.what}"
