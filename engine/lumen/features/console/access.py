@@ -23,9 +23,9 @@ SESSION_TIME = 16 * 3600.0
 SHORTEST_PIN = 4
 MAX_NAME = 60
 FIRST_PAUSE, LONGEST_PAUSE = 1.0, 60.0
-"""The pause of an address after its first wrong PIN that counts, doubled by each further one, and its maximum [s]."""
+"""The first pause of an address after too many wrong PINs, doubled by each further one, and its maximum [s]."""
 FREE_TRIES = 3
-"""The wrong PINs of an address that cause no pause: people mistype."""
+"""From this many wrong PINs on, an address must pause; fewer cause no pause, because people mistype."""
 ALL_TRIES, ALL_PERIOD = 20, 10.0
 """All addresses together may try this many wrong PINs at once, then one per period [s]."""
 MAX_ADDRESSES = 1_000
@@ -45,7 +45,8 @@ class Access:
     """Identifies people by the PINs of the roles; without any PIN everyone is an author, which is allowed on loopback
     only.
 
-    Sessions are signed with a `secret`, so that they outlive the console; those that were ended are not accepted.
+    Sessions are signed with a `secret`, so that they outlive the console's process; those that were ended are not
+    accepted.
     """
 
     def __init__(self, pins: Mapping[Role, str], secret: bytes = b"") -> None:
@@ -55,7 +56,8 @@ class Access:
         self._ended: OrderedDict[str, float] = OrderedDict()
 
     def person(self, address: str, bearer: str, cookie: str) -> Person:
-        """Return the person who sends a request: the role of the PIN in `bearer`, else that of the session in `cookie`.
+        """Return the person who sends a request: by the PIN in `bearer`, else by the session in `cookie`; if that is
+        wrong or missing, the role is `NOBODY`.
 
         Raises TooFastError if PINs are tried too fast.
         """
@@ -153,7 +155,9 @@ def pins_from(said: Mapping[str, str], environment: Mapping[str, str]) -> dict[R
 
 
 def secret_in(root: Path) -> bytes:
-    """Return the key that signs sessions, stored in the home of the project; empty if it cannot be stored."""
+    """Return the key that signs sessions, from the home of the project; a new one is stored there if there is none. It
+    is empty if it cannot be stored.
+    """
     home = Home(home_of(root))
     try:
         kept = read_regular(home.folder / SECRET_FILE, 2 * _SECRET_BYTES, follow=False)

@@ -28,7 +28,7 @@ LINGER = 2.0
 
 
 class WatchedCamera:
-    """The newest image of one robot: `frame` is its JPEG data, `count` the number of images so far."""
+    """The newest image of one robot: `frame` is its JPEG data, at first empty; `count` is the number so far."""
 
     def __init__(self) -> None:
         self.frame, self.count, self.lookers = b"", 0, 0
@@ -78,7 +78,9 @@ class Cameras:
         return robot in self._cameras and self._cameras[robot].bus is not None
 
     async def stream(self, robot: str) -> AsyncIterator[bytes]:
-        """Yield the newest images as parts of one multipart answer; end after SILENCE [s] without an image."""
+        """Yield the newest images as parts of one multipart answer; end after SILENCE [s] without an image, or when the
+        console closes.
+        """
         camera = self._cameras.setdefault(robot, WatchedCamera())
         camera.lookers += 1
         seen = camera.count
@@ -101,7 +103,9 @@ class Cameras:
             self._looked(camera)
 
     async def still(self, robot: str) -> bytes:
-        """Return the newest image, empty if there is only an old one or none. The subscription stays for LINGER [s]."""
+        """Return the newest image, empty if there is none or it is older than FRESH. The subscription stays for LINGER
+        [s].
+        """
         camera = self._cameras.setdefault(robot, WatchedCamera())
         camera.lookers += 1
         try:

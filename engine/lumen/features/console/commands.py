@@ -33,7 +33,7 @@ FINISHED, FAILED, UNSENT, SENT = "finished", "failed", "unsent", "sent"
 
 
 class PageCommand:
-    """One command: `sent` is set once it is known if the bus has it, `over` once its outcome is known."""
+    """One command: `sent` is set once it is known whether the bus has it, `over` once its outcome is known."""
 
     def __init__(self, id: str, robot: str, command: str, by: str) -> None:
         self.id, self.robot, self.command, self.by = id, robot, command, by

@@ -155,8 +155,8 @@ COUNTED = ("asked", "missed", "answers", "languages")
 
 
 def day_of(entries: Iterable[RecordedEntry], machines: MachineSource, wanted: date | None) -> Day:
-    """Return the day `wanted` from the entries of a journal, by the exhibition's clock; None is the last day with
-    visits.
+    """Return the day `wanted` from the entries of a journal, by the exhibition's clock; None means the last day with
+    visits, or the last with entries if there are no visits.
     """
     clock, watch, replayer = JournalClock(), VisitWatch(), Replayer(machines)
     days: dict[date, Day] = {}
@@ -277,8 +277,8 @@ def _unanswered(day: Day, id: str) -> None:
 def understood(entry: JournalInput, taken: ReplayedStep) -> bool:
     """Return True if the behaviour reacted to a visitor's sentence by more than a fallback.
 
-    A fallback is the row `else` of `hears`, or a transition without a guard in a state that has another transition
-    with a guard for the same event.
+    A fallback is the row `else` of `hears`, or a transition without a guard in a state that has another transition for
+    the same event with a guard.
     """
     if taken.step is None or taken.machine is None:
         return bool(entry.entered or entry.exited or entry.commands)

@@ -47,7 +47,9 @@ class Drawing:
         }
 
     def pose(self, body: Any) -> dict[str, list[float]] | None:
-        """Return each link's x, y, z [m] and rotation w, i, j, k in the hall, by name; None without joint angles."""
+        """Return each link's position x, y, z [m] and quaternion w, x, y, z in the hall, by name; None if `body` has no
+        valid joint angles.
+        """
         if not isinstance(body, Mapping):
             return None
         joints = decode_reading(Sense.JOINT, body, tuple(self._project.body.joints))

@@ -18,8 +18,8 @@ from lumen.run.replaying.journals import KeptBundles
 def chart_of(root: Path, robot: str, hash: str) -> dict[str, Any]:
     """Return the chart of the behaviour of the bundle `hash`, or of the saved files if that bundle was not kept.
 
-    All lengths are in px. `boxes` are in the order in which they are drawn: outer ones first. Raises UsageError if
-    there is neither.
+    All lengths are in px. `boxes` are in the order in which they are drawn: outer ones first. Raises UsageError if that
+    bundle was not kept and the saved files have errors.
     """
     robot = one_robot(root, robot)
     project = KeptBundles(root, robot).load(hash) or check_files(root, read_files(root, robot))[0]

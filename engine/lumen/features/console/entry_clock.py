@@ -10,7 +10,7 @@ from lumen.language.numbers import is_number
 
 
 class ToldPage(NamedTuple):
-    """Entries of a journal that follow each other, each with its `position`.
+    """Consecutive entries of a journal, each with its `position`.
 
     `epoch` is the exhibition's time 0 that holds for the first entry [s since 1970], None if unknown.
     """

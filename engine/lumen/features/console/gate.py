@@ -1,4 +1,4 @@
-"""The checks before every request: its host, its origin, its type, which must be JSON, and its size."""
+"""The checks before every request: its host, its origin, its content type (JSON only) and its size."""
 
 import asyncio
 import ipaddress
@@ -105,7 +105,7 @@ def _same_address(name: str, here: str) -> bool:
 
 
 async def _read(receive: Receive, headers: Mapping[str, str]) -> tuple[bytes, tuple[int, str] | None]:
-    """Return the body, and None or the status and reason of a refusal."""
+    """Return the body and None, or an empty body with the status and the reason of a refusal."""
     too_large = 413, f"the request body is too large: send at most {MAX_BODY} bytes"
     length = headers.get("content-length", "0")
     if length.isdigit() and int(length) > MAX_BODY:

@@ -32,7 +32,7 @@ REPLAY_TIME = 10.0
 
 def day(pipe: AnswerPipe, root: Path, robot: str, wanted: str, form: str, whose: str) -> Iterator[bytes]:
     """Answer with a day, for a page or as `csv`: from this machine's files, or, if `whose` is `told`, from pages in the
-    pipe.
+    pipe. An empty `wanted` means the last day. The answer is NOTHING if this machine has no files.
     """
     from lumen.features.console.day import day_csv
     from lumen.features.console.kept_days import KeptDays
@@ -83,7 +83,7 @@ def replay(pipe: AnswerPipe, root: Path, robot: str) -> Iterator[bytes]:
 def saying(
     pipe: AnswerPipe, root: Path, robot: str, behavior: str, state: str, row: str, language: str, text: str
 ) -> Iterator[bytes]:
-    """Add a sentence of a visitor to the sayings, with the row that should have matched it."""
+    """Add a sentence of a visitor to the sayings, with the row that should have matched it; answer with their file."""
     from lumen.language.sayings import Saying
     from lumen.run.new_saying import write_saying
 
@@ -98,7 +98,7 @@ def chart(pipe: AnswerPipe, root: Path, robot: str, hash: str) -> Iterator[bytes
 
 
 def story(pipe: AnswerPipe, root: Path, robot: str, position: int, visitor: str, name: str) -> Iterator[bytes]:
-    """Write the story of a visit, in which the visitor has another name."""
+    """Write the story of a visit, in which `visitor` is called `name`; answer with its file and a remark."""
     from lumen.features.console.kept_stories import keep_story
 
     kept = keep_story(root, position, robot, visitor=visitor, name=name)

@@ -23,7 +23,7 @@ class KeptStory(NamedTuple):
     """A story that was written."""
 
     file: Path
-    """Its file, relative to the project's folder."""
+    """The path of its file, relative to the project's folder."""
     remark: str
     """The robot's actions that differ with the files of today; empty if all are the same."""
 

@@ -57,7 +57,7 @@ MAX_STORY_NAME = 200
 MAX_FOUND = 200
 """The most entries that a search returns; the answer tells if there are more."""
 MAX_SEARCHED = 200_000
-"""The number of positions that a search reads: several busy days."""
+"""The most positions that a search covers: several busy days."""
 ELSEWHERE = "this robot's files are on another machine: open the console there"
 SAID = ("behavior", "state", "row", "language", "text")
 """The keys of a saying that is posted."""
@@ -261,7 +261,9 @@ class Past:
         return self._watch.keys.is_ours(view.robot)
 
     def home(self, view: KnownRobot) -> str:
-        """Return the name for the folder of one of our own robots; empty, for the first, if it is another robot."""
+        """Return the name by which jobs find the robot's files; empty if the project has a single robot, or the robot
+        is not of this project.
+        """
         return self._watch.keys.home(view.robot) if self.is_ours(view) else ""
 
     async def _request(self, view: KnownRobot, body: dict[str, Any]) -> dict[str, Any]:

@@ -40,7 +40,9 @@ class PreparedSentences:
         self.routes = [Route("/api/prepared", self._listed), Route("/api/prepared", self._changed, methods=["POST"])]
 
     def all(self) -> list[PreparedSentence]:
-        """Return the kept sentences in their order; none if the file is missing. Raises UsageError for a broken one."""
+        """Return the kept sentences in their order; none if the file is missing. Raises UsageError if it is broken or
+        can't be read.
+        """
         try:
             if self._file.stat().st_size > MAX_BYTES:
                 raise ValueError

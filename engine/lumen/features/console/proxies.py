@@ -31,7 +31,9 @@ class TrustedProxies:
             raise UsageError(f"`proxies` of the console: {error}; write an address such as 127.0.0.1") from None
 
     def seen(self, scope: AsgiScope) -> AsgiScope:
-        """Return the request as it came to the first proxy: with its `client` and its `scheme`."""
+        """Return the request with the `client` and the `scheme` that a trusted proxy reports; unchanged if it came from
+        elsewhere.
+        """
         client = scope.get("client")
         if not client or not self._trusts(_address(client[0])):
             return scope
@@ -44,7 +46,9 @@ class TrustedProxies:
         return seen
 
     def _first_stranger(self, addresses: list[str]) -> str:
-        """Return the last address that no trusted proxy has, else an empty text. Each proxy appends its peer."""
+        """Return the last address that no trusted proxy has; empty if there is none, or a later text is no address.
+        Each proxy appends its peer.
+        """
         for text in reversed(addresses):
             address = _address(text)
             if address is None:

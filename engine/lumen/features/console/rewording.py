@@ -112,7 +112,9 @@ def _checked(before: Mapping[str, str], wanted: Mapping[str, str]) -> dict[str, 
 
 
 def reworded(one: WrittenSentence, content: bytes, texts: Mapping[str, str]) -> bytes:
-    """Return the file with other texts of a sentence. Raises UsageError if the way it is written does not allow it."""
+    """Return the file with the new texts of a sentence, by language. Raises UsageError if the way the file is written
+    does not allow it.
+    """
     text, document = FileText(one.file, content), one.report.document
     expected, edits = copy.deepcopy(document.data), list[Edit]()
     for language, said in texts.items():
@@ -171,7 +173,7 @@ def _folded(data: Any) -> Any:
 
 
 def _new_findings(root: Path, before: Mapping[str, bytes], after: Mapping[str, bytes]) -> list[Diagnostic]:
-    """Return what lint finds in the files after the change and did not find before, errors first."""
+    """Return the findings of lint in the changed files that it did not report before, errors first."""
 
     def known(found: Iterable[Diagnostic]) -> set[tuple[str, str, str]]:
         return {(each.code, each.message, each.place.file) for each in found}

@@ -42,7 +42,7 @@ class KeyBook:
         settings = main_settings(root)
         self._root, self._told_apart = root, bool(settings and settings.told_apart)
         self.robots: Sequence[str] = tuple(settings.robots) if settings else ()
-        """Robots that exist in any case: those of the project, else the one that was reached."""
+        """Robots that are known before they report their presence: those of the project, or the one reached."""
 
     def use(self, reached: Reached) -> Sequence[str]:
         """Read the routes again for a bus that was reached, and return the patterns to subscribe to there."""

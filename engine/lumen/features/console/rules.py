@@ -1,4 +1,6 @@
-"""The console: other machines need a PIN, no PIN is in a file, and trusted proxies are addresses."""
+"""The rules for the console: other machines need a PIN, no PIN is in a file, and trusted proxies are addresses or
+networks.
+"""
 
 import re
 

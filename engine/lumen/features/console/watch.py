@@ -120,7 +120,7 @@ class Watch:
             if isinstance(body.get("robot"), str) and isinstance(body.get("parts"), list):
                 self._later(self._present, body)
         elif sense and robot in self.robots:
-            with suppress(KeyError):  # its last robot is forgotten just now
+            with suppress(KeyError):  # on a thread of the bus: the robots may change meanwhile
                 self.robots[robot].feel(sense, body)
                 self.felt(robot, sense, body)
         elif message.key.endswith("config.status"):

@@ -1,4 +1,4 @@
-"""Finds the text in a project's files that the robot said: with its placeholders, in all languages."""
+"""Finds the text in a project's files behind a sentence of the robot: with its placeholders, in all languages."""
 
 import hashlib
 import re
@@ -44,7 +44,7 @@ class WrittenSentence(NamedTuple):
     language: str
     """Its language, empty if it is for every language."""
     alternative: int | None
-    """Its number among its alternatives, None if there is only one."""
+    """Its index among its alternatives, from 0; None if they are not a list."""
     text: str
 
     @property
