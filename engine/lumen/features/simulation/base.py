@@ -1,4 +1,4 @@
-"""The interface of bases: legs, wheels or a mount under a simulated robot, as the kind in its body's roles requires."""
+"""The interface of bases: the legs, wheels or mount under a simulated robot; the roles of its body name the kind."""
 
 from collections.abc import Callable
 from dataclasses import dataclass

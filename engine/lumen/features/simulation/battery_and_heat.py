@@ -31,7 +31,7 @@ MOTOR_HOT, MOTOR_COOLED = 75.0, 70.0
 """The temperatures [degrees Celsius] at which the robot raises `motors.hot`, and may raise it again."""
 
 MOTOR_AMBIENT, MOTOR_RISE, MOTOR_TIME_CONSTANT = 38.0, 300.0, 600.0
-"""The motors' first temperature [degrees Celsius], their rise at the maximum torque, and the time constant [s].
+"""The motors' initial temperature [degrees Celsius], their rise at the maximum torque, and the time constant [s].
 
 Chosen, not measured.
 """
@@ -40,8 +40,8 @@ Chosen, not measured.
 class BatteryAndHeat:
     """Integrates the energy that the robot uses, and the heat of its motors.
 
-    `efforts` are the joints' maximum torques [N m], and `charge` is the battery's first charge, 0 to 1. `temperatures`
-    [degrees Celsius] are in the joints' order. `plugged` is true while the charger is in.
+    `efforts` are the joints' maximum torques [N m], and `charge` is the battery's initial charge, from 0 to 1.
+    `temperatures` [degrees Celsius] are in the joints' order. `plugged` is true while the charger is in.
     """
 
     def __init__(self, names: Sequence[str], efforts: Sequence[float], charge: float = 1.0) -> None:

@@ -25,7 +25,7 @@ TOES_PRESS, NEAR_TOES = 0.2, 0.05
 
 The toes press fully while the DCM is at the feet's front edge. They do not press if the DCM is farther behind the edge
 than that distance: the sole would tip, and the body with it, while the other foot is in the air. Nor do they if the DCM
-is as far beyond the edge: they would only make a certain fall harder.
+is as far beyond the edge: they would only make an inevitable fall harder.
 """
 
 KNEE_LIFT, LIFTS_EARLY = 0.25, 0.7

@@ -29,7 +29,7 @@ class DriveGeometry(NamedTuple):
     """The dimensions and limits of two driven wheels side by side."""
 
     angles: NDArray[np.intp]
-    """The indexes of the wheels' joints in MuJoCo's `qpos`, left first."""
+    """The indices of the wheels' joints in MuJoCo's `qpos`, left first."""
     motors: NDArray[np.intp]
     """The indices of the wheels' actuators in MuJoCo's model."""
     signs: NDArray[np.float64]

@@ -29,7 +29,7 @@ MOTORS_LATE = 0.06
 """The time for which the wheels keep their speed before a command acts [s]."""
 
 STUCK_TIME = 3.0
-"""The time without a movement after which a robot is stuck [s]."""
+"""A drive that has not moved the robot for this long counts as stuck [s]."""
 
 
 class Drive:

@@ -1,4 +1,4 @@
-"""Choose the OpenGL library for drawing without a screen, on import, which should precede that of mujoco."""
+"""Chooses the OpenGL library for drawing without a screen when it is imported; import it before mujoco."""
 
 import ctypes
 import importlib

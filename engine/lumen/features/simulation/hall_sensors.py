@@ -48,7 +48,7 @@ class TactileSensors:
 
 
 NEWTONS_PER_KILOGRAM = 9.81
-"""The newtons in a kilogram of force: ALMemory gives these forces in kilograms."""
+"""The newtons in a kilogram-force: ALMemory gives these forces in kilograms."""
 
 SENSED_FEET = {"left": "LFoot", "right": "RFoot"}
 """ALMemory's names of the feet, by side."""

@@ -18,10 +18,10 @@ GYRO_BIAS = radians(15.0)
 """The maximum bias of a gyrometer [rad/s]: the zero-rate level of ST's L3G4200D at 500 deg/s."""
 
 GYRO_DRIFT, WARMING, WARMING_TIME = radians(0.04), 20.0, 1200.0
-"""The maximum change of the bias with temperature [rad/s per degree], and the torso's warming [degrees], [s].
+"""The maximum change of the bias with temperature [rad/s per degree], and the torso's warming: its final value
+[degrees] and its time constant [s].
 
-The warming has a final value and a time constant. The first number is from the data sheet of ST's L3G4200D; the others
-are chosen.
+The first number is from the data sheet of ST's L3G4200D; the others are chosen.
 """
 
 GYRO_RESIDUE = 3e-4

@@ -12,12 +12,13 @@ _HALT = 0.4
 
 
 def duration(speed: float) -> float:
-    """Return the duration of a change of posture [s] at a `speed` that is a share of the maximum, above 0 to 1."""
+    """Return the duration of a change of posture [s] at a `speed` that is a share of the maximum (above 0, up to 1)."""
     return min(MAX_TRANSITION_TIME, MIN_TRANSITION_TIME / speed)
 
 
 class JointTransition:
-    """Moves all joints of `targets` [rad] together along a smoothstep, within `seconds` or as long as one needs.
+    """Moves all joints of `targets` [rad] together along a smoothstep, in `seconds`, or longer if a joint needs more
+    time.
 
     `after` is called once at the end, but not after `cancel`. A cancelled transition comes to a halt within 0.4 s.
     """

@@ -24,7 +24,7 @@ class Variation:
     mass: float = 1.0
     """The factor of all masses."""
     friction: float = 1.0
-    """The factor of the ground's friction."""
+    """The factor of the friction of all geoms, the ground's included."""
 
 
 MAX_TIMESTEP = 0.01

@@ -20,7 +20,7 @@ LYING_TILT = pi / 3
 """The tilt of the torso beyond which the robot is lying [rad]; that of a relaxed, sitting robot is half as large."""
 
 SETTLING_TIME, REST_TIME = 1.5, 0.4
-"""The times of moving the joints to the posture in which a robot lies or sits, and of resting afterwards [s]."""
+"""The time to move the joints to the posture in which a robot lies or sits, and the rest after a passage [s]."""
 
 
 class UprightSensor(Protocol):

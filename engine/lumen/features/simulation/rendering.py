@@ -59,7 +59,7 @@ class RenderQuality:
     contact: bool = False
     """True to draw dark spots under the feet."""
     sides: tuple[int, int] | None = None
-    """The number of faces of round shapes, around and from top to bottom; None for that of the model."""
+    """The number of faces of round shapes, around and from top to bottom; None for those of the model."""
 
 
 CAMERA_QUALITY = RenderQuality(sides=(20, 12))

@@ -49,7 +49,7 @@ LEARNING_PERIODS = 1200
 """The time constant of the learned bias, in control periods at rest."""
 
 REST, REST_SPREAD = 10, 0.05
-"""A number of control periods, and the maximum difference of their readings [rad/s] if the robot is at rest."""
+"""The robot counts as at rest if the readings of this many control periods differ by less than this [rad/s]."""
 
 
 class GyroCalibration:

@@ -102,7 +102,7 @@ def set_up(request: RobotRequest) -> Setup:
 
 
 def set_up_house(requests: Mapping[str, RobotRequest]) -> dict[str, Setup]:
-    """Return standing robots in one hall with one shared clock."""
+    """Return standing robots in one hall with one shared clock. Raises RobotError if the models are unusable."""
 
     robots = {
         name: HallRobot(

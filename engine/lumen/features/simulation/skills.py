@@ -144,7 +144,8 @@ class SimulatedSkills:
                 assert_never(command)
 
     def fall(self, now: float) -> None:
-        """Go limp, with the head raised and the arms in the way of the fall, until `lie` releases them.
+        """Go limp; unless the robot falls on its back, raise the head and put the arms in the way, until `lie` releases
+        them.
 
         Legs would be too slow to help.
         """

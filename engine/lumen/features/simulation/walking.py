@@ -36,7 +36,7 @@ MAX_STAGE_DRIFT = 0.02
 """The distance beyond the stage at which a later step may be planned [m]: each foot lands a little off its plan."""
 
 ARRIVAL_TOLERANCE, HEADING_TOLERANCE = 0.02, 0.05
-"""The distances from its goal [m], [rad] beyond which a finished walk has failed."""
+"""The distance [m] and the angle [rad] from its goal beyond which a finished walk has failed."""
 
 WALK_POSTURE_TIME, WALK_REST_TIME = 0.8, 0.2
 """The time to reach the walk's posture, and to come to rest there [s]."""
@@ -45,7 +45,8 @@ HAZARD_CHECK_PERIOD = 0.1
 """The time between two checks for hazards [s]."""
 
 ARM_SWING_GAIN, MAX_ARM_SWING, HANGING_ARM_PITCH = 2.5, 0.35, 1.0
-"""The swing of hanging arms: [rad/m] for each metre between the feet, at most [rad], for a pitch above [rad].
+"""The swing of arms for each metre between the feet [rad/m], its maximum [rad], and the pitch above which arms hang
+[rad].
 
 The first value is for legs as long as those that the paces were tuned with.
 """
@@ -102,7 +103,8 @@ class WalkController:
         self._walking: WalkActivity | None = None
 
     def begin(self, command: Walk | Move, now: float) -> "WalkActivity":
-        """Begin a walk and return its activity; for a new velocity, a walk in progress changes its own.
+        """Begin a walk and return its activity. If a walk at a velocity is in progress, a new velocity changes that
+        walk.
 
         Raises RobotError, and changes nothing, if the walk must not begin.
         """

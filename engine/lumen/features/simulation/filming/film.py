@@ -1,4 +1,4 @@
-"""A film of a run in simulated time: shots chosen by events, subtitles, drawn by one thread per core."""
+"""A film of a run in simulated time: shots chosen by events, and subtitles; drawn by a thread per core, at most 8."""
 
 import os
 from collections import deque

@@ -8,7 +8,7 @@ FILM_TOLD_EVERY = 15.0
 
 
 class FilmProgress:
-    """Prints by `tell` how much of a film of about `whole` [s] is drawn; `whole` is 0 if the length is unknown."""
+    """Reports to `tell` how much of a film of about `whole` [s] is drawn; `whole` is 0 if the length is unknown."""
 
     def __init__(
         self, tell: Callable[[str], None], whole: float = 0.0, clock: Callable[[], float] = time.monotonic

@@ -52,7 +52,8 @@ class CameraPlace(NamedTuple):
 
 
 SHORTEST_SHOT, LONGEST_SHOT = 2.5, 9.0
-"""The shortest time that a shot stays, and the time after which the shot changes without an event [s]."""
+"""The shortest time that a shot stays, and the time after which it changes without an event if a visitor is there [s].
+"""
 
 FIELD_OF_VIEW = 36.0
 """The vertical angle of view [deg]: that of a long lens, without visible distortion."""
@@ -104,7 +105,9 @@ class ShotDirector:
 
 
 def camera_place(shot: Shot, who: Subjects, aspect: float) -> CameraPlace:
-    """Return the camera's place for a shot; `aspect` is the picture's width divided by its height."""
+    """Return the camera's place for a shot; `aspect` is the picture's width divided by its height. Without a visitor, a
+    shot that needs one becomes a full shot.
+    """
     if shot is Shot.CLOSE_UP:
         return CameraPlace(_beside(who, CLOSE_DISTANCE, who.head[2] + 0.02), _higher(who.head, -0.03))
     if shot is Shot.POINT_OF_VIEW and who.visitor:

@@ -42,7 +42,9 @@ class PhysicsOptions:
             raise UsageError("--physics can't be combined with --watch, --fix, --diff or `-`")
 
     def more(self, found: Sequence[Findings], wanted: Wanted, options: argparse.Namespace) -> list[Findings]:
-        """Return the findings with those of the motions in simulation added; print a summary of these as text."""
+        """Return the findings with those of the motions in simulation added; with `--format text`, print a summary of
+        these.
+        """
         if not options.physics:
             return [*found]
         from lumen.cli.progress import progress
