@@ -200,7 +200,7 @@ def value_kind(kind: str, path: NodePath) -> NameKind | None:
 
 
 def names_verb(kind: str, path: NodePath) -> bool:
-    """Return True if the key at a path may be a skill's name, since a verb or its end is expected there."""
+    """Return True if the key at a path may be a skill's name: a verb, or how a skill ends, is expected there."""
     steps = [step for step in path[:-1] if isinstance(step, str)]
     if kind == "story":
         return steps[-1:] in (["skills"], ["did"]) or steps == ["robot"]

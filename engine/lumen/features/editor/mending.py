@@ -11,7 +11,8 @@ from lumen.language.text_lines import lines_of
 from lumen.project.yaml_reader import parse
 
 MAX_CUTS = 8
-"""The number of faulty lines that are removed with the blocks below them before enclosing blocks are."""
+"""The most faulty lines that are removed with the blocks below them; then a whole enclosing block is removed instead.
+"""
 
 _WORD = re.compile(r"[^\s\"'`\[\]{},:#]+")
 _QUOTED = re.compile(r"""(?:^|(?<=[\s\[{,:(]))(?P<text>"(?:[^"\\]|\\.)*(?:"|$)|'(?:[^']|'')*(?:'|$))|(?:^|\s)\#.*""")

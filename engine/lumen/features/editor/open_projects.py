@@ -27,7 +27,7 @@ class OpenProjects:
         self.forget(path)
 
     def forget(self, path: Path) -> None:
-        """Discard the analysis of a changed file's project, except as the earlier one of the next."""
+        """Discard the analysis of a changed file's project; the next analysis uses it only as the earlier one."""
         if root := root_of(path):
             last = self._analyses.pop(root, None)
             if last is not None:

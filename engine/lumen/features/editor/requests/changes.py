@@ -28,7 +28,8 @@ def prepare(server: LanguageServer, params: lsp.PrepareRenameParams) -> lsp.Prep
 async def rename(server: LanguageServer, params: lsp.RenameParams) -> lsp.WorkspaceEdit | None:
     """Return the edits of a renaming; None if the file belongs to no project.
 
-    Raises JsonRpcInvalidParams if the renaming is impossible or causes findings.
+    Raises JsonRpcInvalidParams if the renaming is impossible or causes findings, and JsonRpcContentModified if a file
+    changes meanwhile.
     """
     await server.settled(params.text_document.uri)
     if (found := server.at(params.text_document.uri, params.position)) is None:
