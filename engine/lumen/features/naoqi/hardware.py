@@ -64,7 +64,7 @@ _FACE_LIGHTS = {
     "ears": "EarLeds", "left_ear": "LeftEarLeds", "right_ear": "RightEarLeds",
     "chest": "ChestLeds",
 }  # fmt: skip
-"""ALLeds' groups. The ears of both robots, and NAO's head, are only blue: of a colour they show its share of blue."""
+"""ALLeds' groups. The ears of both robots, and NAO's head, are only blue: they show the blue part of a colour."""
 
 NAO = Hardware(
     touch={

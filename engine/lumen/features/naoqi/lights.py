@@ -10,7 +10,7 @@ NAOQI_COLOURS: Mapping[object, int] = {
     "green": 0x00FF00, "orange": 0xFF6000, "purple": 0x8000FF, "pink": 0xFF4080, "turquoise": 0x20FFC0,
     "gold": 0xFFA000, "violet": 0x9020FF,
 }  # fmt: skip
-"""Colours that look on LEDs like their names; all others are CSS's."""
+"""Colours that are adjusted to look on LEDs as their names say; all others are those of CSS."""
 
 CUE_FADE = 0.05
 """The duration of an immediate change [s]."""

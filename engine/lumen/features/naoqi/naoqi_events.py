@@ -13,7 +13,7 @@ from lumen.ports import Tactile
 
 FALLEN = "robotHasFallen"
 FALLING = ("robotIsFalling", "ALMotion/RobotIsFalling")
-"""The names of a beginning fall in NAOqi 2.1 and 2.8."""
+"""The event at the beginning of a fall, by its names in NAOqi 2.1 and 2.8."""
 
 SOUND = "ALSoundLocalization/SoundLocated"
 SURE_SOUND = 0.5
@@ -111,7 +111,9 @@ class NaoqiEvents:
 
 
 class HealthAlerts:
-    """Raises `battery.low` and `motors.hot` once, and again after they have recovered."""
+    """Returns the events `battery.low` and `motors.hot` once, and again only after the battery or the motor has
+    recovered.
+    """
 
     def __init__(self) -> None:
         self._low = False

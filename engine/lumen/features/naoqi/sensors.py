@@ -23,7 +23,7 @@ DEFAULT_IMAGE_SIZE = Size(320, 240)
 CAMERA_RATE = 30
 """The camera's images per second; the route's rate decides how many are fetched."""
 CLOCK_OFFSET_FRAMES = 100
-"""The number of last images of which the fastest to arrive gives the offset between the robot's clock and Lumen's."""
+"""The offset between the robot's clock and Lumen's is that of the fastest to arrive of this many recent images."""
 
 _log = logging.getLogger(__name__)
 

@@ -194,7 +194,7 @@ class NaoqiSession:
     def subscribe(self, event: str, heard: Callable[[Any], None]) -> Any:
         """Call `heard`, on a thread of qi's, with the event's value each time that ALMemory raises that event.
 
-        The subscription ends when the returned object is released. Raises RobotError.
+        The subscription ends when the returned object is released. Raises RobotError if ALMemory can't subscribe.
         """
         subscriber = self.request("ALMemory", "subscriber", event)
         try:

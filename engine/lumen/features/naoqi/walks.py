@@ -13,7 +13,8 @@ from lumen.language.commands import Move, Walk
 MAX_WALK_DISTANCE = 10.0
 """The longest walk that is accepted [m]."""
 ARRIVAL_TOLERANCE, HEADING_TOLERANCE = 0.1, 0.2
-"""A walk that ends farther than this from its goal [m], [rad] has failed, if NAOqi does not report the result."""
+"""The distance [m] and angle [rad] from its goal beyond which a walk has failed, if NAOqi does not report the result.
+"""
 POSITION_CHECK_PERIOD = 0.2
 """The time between two checks of the robot's position [s]."""
 SITTING_FAMILIES = ("Sitting", "SittingOnChair", "Belly", "Back", "Left", "Right", "UpsideDown", "Kneeling", "Lifted")
