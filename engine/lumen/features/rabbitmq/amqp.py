@@ -103,7 +103,7 @@ class AmqpBus(Bus):
     def subscribe(self, pattern: str, handler: MessageHandler) -> Callable[[], None]:
         """Call the handler with the messages of a pattern; return a function that unsubscribes it.
 
-        Raises BusError if the bus is closed, the pattern is no valid key, or the broker refuses.
+        Raises BusError if the bus is closed, the pattern is invalid, or the broker refuses.
         """
         if self._closed:
             raise BusClosedError("the bus is closed: subscribing is no longer possible")
@@ -114,7 +114,7 @@ class AmqpBus(Bus):
         return lambda: consumer.remove(subscription)
 
     def send(self, message: Outgoing) -> None:
-        """Queue a message for sending. Raises BusError if the bus is closed or full."""
+        """Queue a message for sending. Raises BusError if the bus is closed or full, or a key is invalid."""
         if self._closed:
             raise BusClosedError("the bus is closed: publishing is no longer possible")
         key, body, reply_to, correlation_id, ttl, *_ = message
@@ -157,8 +157,8 @@ class AmqpBus(Bus):
     def reply(self, message: Message, body: Any) -> None:
         """Reply to a message, unless it expects no reply.
 
-        A text is sent unchanged, as modules of 2015 expect `command finished`; all else as JSON. Raises BusError if the
-        bus is closed.
+        A text for a queue is sent unchanged, as modules of 2015 expect `command finished`; everything else is JSON.
+        Raises BusError if the bus is closed.
         """
         if not message.reply_to:
             return

@@ -31,7 +31,10 @@ logging.getLogger("pika").setLevel(logging.CRITICAL)  # pika logs a traceback fo
 
 
 class BrokerAddress:
-    """The parts of a broker's URL; `str` shows it without the password."""
+    """The parts of a broker's URL; `str` shows its host and port only.
+
+    Raises BusAddressError if the URL, its certificates or the file of credentials is unusable.
+    """
 
     def __init__(self, url: str) -> None:
         shown = public(url)

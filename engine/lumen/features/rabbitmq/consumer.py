@@ -22,7 +22,7 @@ from lumen.ports import MessageHandler
 from lumen.upkeep.drops import DropLog
 
 PREFETCH = 64
-"""The number of deliveries that the broker sends ahead for each subscription."""
+"""The most deliveries that the broker sends ahead for each subscription."""
 BIND_TIMEOUT = 5.0
 """The time that a subscription waits for the broker to confirm it [s]."""
 TURN_TIME = 1.0
@@ -143,7 +143,9 @@ class Consumer(BrokerConnection):
             raise BusRefusedError(f"the broker at {self.address} {what}: {subscription.refusal}")
 
     def handled(self, delivery: Delivery) -> None:
-        """Acknowledge a delivery and all before it, so that the broker sends more."""
+        """Acknowledge a delivery and all before it, so that the broker sends more; if they may be lost, only in
+        batches.
+        """
         enough = 1 if delivery.subscription.must_arrive else PREFETCH // 2
         if delivery.epoch == self._epoch and delivery.number - self._acknowledged >= enough:
             self._acknowledged = delivery.number

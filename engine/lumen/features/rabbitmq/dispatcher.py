@@ -22,9 +22,9 @@ from lumen.upkeep.threads import MessageGuard, WatchedThread
 FLUSH_MARK = "lumen.mark"
 """The type of a message that only marks that everything published before it has arrived."""
 MAX_REMEMBERED_IDS = 10_000
-"""The number of messages that must arrive whose ids are remembered, to recognise repeated ids."""
+"""The most messages whose ids are remembered, to recognise repetitions; only messages that must arrive count."""
 MAX_SHOWN = 40
-"""The number of characters of an id or a sender that a message shows."""
+"""The most characters of an id or a sender that a log message shows."""
 
 _log = logging.getLogger(__name__)
 

@@ -12,11 +12,13 @@ from lumen.language.causes import UNKNOWN_ORIGIN, MessageOrigin
 from lumen.upkeep.drops import DropLog
 
 MAX_PENDING_MESSAGES = 50_000
-"""The number of waiting messages that may be lost; beyond it the oldest are dropped."""
+"""The most messages that may wait, of those that need not arrive; beyond it the oldest are dropped."""
 MAX_PENDING_BYTES = 64 * 1024 * 1024
-"""The total size of waiting bodies [bytes], separately for messages that must arrive and those that may be lost."""
+"""The maximum total size of waiting bodies [bytes], separately for messages that must arrive and those that may be
+lost.
+"""
 MAX_PENDING_RELIABLE = 10_000
-"""The number of waiting messages that must arrive; beyond it `put` raises."""
+"""The most messages that may wait, of those that must arrive; beyond it `put` raises."""
 LATE = "they were too old before they could be sent"
 
 _log = logging.getLogger(__name__)

@@ -38,7 +38,7 @@ class PackedBody(NamedTuple):
 def packed(body: Any, content_type: str) -> PackedBody | None:
     """Return the body in that form; None if the form can't hold it.
 
-    It holds images, or joints, of at most MAX_BODY_BYTES and with plain other fields.
+    A JPEG holds an image whose other fields are texts or integers, floats hold joints; each at most MAX_BODY_BYTES.
     """
     if not isinstance(body, Mapping):
         return None

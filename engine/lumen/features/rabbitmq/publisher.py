@@ -27,17 +27,17 @@ from lumen.language.routes import FLOATS_TYPE, JPEG_TYPE
 from lumen.upkeep.drops import DropLog
 
 MAX_UNCONFIRMED_MESSAGES = 1_000
-"""The number of messages that may be sent but not confirmed yet; more wait in the outbox."""
+"""The most messages that are sent but not confirmed yet; more wait in the outbox."""
 MAX_BY_GUEST = 8
-"""The number of waiting messages, for example after an outage, that a thread sends along when it publishes one."""
+"""The most waiting messages, for example after an outage, that a thread sends along when it publishes one."""
 MAX_UNCONFIRMED_BYTES = 4 * 1024 * 1024
-"""The total size of the bodies of messages that may be sent but not confirmed yet [bytes]."""
+"""The maximum total size of the bodies of messages that are sent but not confirmed yet [bytes]."""
 CONFIRM_TIME = 0.01
 """The time for which the broker's confirmations accumulate while more messages are sent [s]."""
 IDLE_TIME = 0.5
 """The time that the connection waits for events if there is nothing to send [s]."""
 MAX_WARNED_KEYS = 1_000
-"""The number of keys without a receiver for which a warning is logged."""
+"""The most keys without a receiver for which a warning is logged."""
 PROBE_PERIOD = 1.0
 """The time between two attempts to find out whether a key without a receiver has one now [s]."""
 PERSISTENT_DELIVERY = 2

@@ -23,15 +23,15 @@ UNROUTED = "lumen.nowhere"
 SIDE_QUEUES = f"{DEAD_LETTERS} and {UNROUTED}"
 
 MAX_LENGTH_WITHOUT_ROUTE = 20_000
-"""The length of a queue for a key without a route; the oldest messages are dropped beyond it."""
+"""The maximum length of a queue for a key without a route; the oldest messages are dropped beyond it."""
 MAX_LENGTH_TELEMETRY = 1_000
-"""The length of a telemetry queue whose route has no `keep`."""
+"""The maximum length of a telemetry queue whose route has no `keep`; the oldest messages are dropped beyond it."""
 MAX_LENGTH_COMMANDS = 100_000
-"""The length of a queue of commands; beyond it, the broker refuses further ones."""
+"""The maximum length of a queue of commands; beyond it, the broker refuses further ones."""
 MAX_JOURNAL_BYTES = 10**9
-"""The size of a journal's queue or stream [bytes]."""
+"""The maximum size of a journal's queue or stream [bytes]."""
 MAX_SIDE_QUEUE_BYTES = 10**8
-"""The size of `lumen.dead` and of `lumen.nowhere` [bytes]."""
+"""The maximum size of `lumen.dead` and of `lumen.nowhere`, each [bytes]."""
 MAX_QUEUE_NAME_BYTES = 255
 """The longest short string of AMQP; a longer name is replaced by its hash."""
 HOUR = 60 * 60 * 1000

@@ -16,7 +16,7 @@ from lumen.features.rabbitmq.properties import MessageProperties
 PREFETCH = 200
 """The number of messages that the broker sends ahead: a stream requires a limit."""
 MOST_READ = 2000
-"""The number of messages that may wait for `take`; beyond it no more are requested."""
+"""The most messages that may wait for `take`; beyond it no more are requested."""
 TURN = 0.2
 """The time that the connection's thread waits for events before it checks whether to end [s]."""
 

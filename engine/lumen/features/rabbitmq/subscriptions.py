@@ -99,7 +99,7 @@ class Subscriptions:
         return subscription
 
     def claim(self, pattern: str, handler: MessageHandler) -> Subscription | None:
-        """Give the prepared subscription of this pattern its handler and return it, else None."""
+        """Give the prepared and bound subscription of this pattern its handler and return it; None if there is none."""
         with self._changing:
             subscription = self._prepared.pop(pattern, None)
             if subscription is None or not subscription.bound.is_set() or subscription.refusal:

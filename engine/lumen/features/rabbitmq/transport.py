@@ -38,7 +38,9 @@ class Transport:
 
     @property
     def drops(self) -> tuple[DropLog, ...]:
-        """The logs of dropped messages: too many, a fault of Lumen, a repeated id, or impossible to send."""
+        """The logs of dropped messages: above the rate, failed by a fault of Lumen, unusable, with a repeated id, too
+        old or too many to wait, or impossible to send.
+        """
         sent = self.publisher.outbox.drops, self.publisher.unsendable
         heard = self.dispatcher.guard.drops, self.dispatcher.unusable.drops, self.dispatcher.repeated
         return self.consumer.intake.drops, *heard, *sent
