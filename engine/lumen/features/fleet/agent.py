@@ -33,7 +33,7 @@ from lumen.features.fleet.signing import ORDER, verified
 from lumen.project.files import fingerprint
 
 MOST_TRIES = 2
-"""The number of times that a process may end during a bundle's probation before the robot gives up on it."""
+"""The robot gives up on a bundle once its process has ended this many times during the bundle's probation."""
 
 
 class FileTaker(FileTrier, Protocol):

@@ -1,4 +1,4 @@
-"""A centre: it collects the robots' reports, advances a rollout, and sends each house the order what to run."""
+"""A centre: it collects the robots' reports, advances a rollout, and sends each house orders that say what to run."""
 
 import time
 from collections import deque

@@ -13,7 +13,7 @@ from lumen.upkeep.own_folders import private_folder
 
 FILE = "centre.jsonl"
 TAIL = 4_000_000
-"""The size of the end of the file in which the last state is searched [bytes]."""
+"""The size of the part at the end of the file that is searched for the last state [bytes]."""
 
 
 class CentreJournal:

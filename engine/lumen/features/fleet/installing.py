@@ -72,7 +72,10 @@ def bundle_folder(root: Path) -> BundleFolder:
 
 
 def install(root: Path, files: Mapping[str, bytes]) -> Mapping[str, bytes]:
-    """Replace the project's files by these; return the files that are then there. Links and fleet.yaml stay."""
+    """Replace the project's files with these, and delete all others; return the files that are then there.
+
+    Links and fleet.yaml stay. A file that can't be written or deleted stays as it is.
+    """
     there, wanted = _own(read_files(root)), _own(files)
     for path, content in wanted.items():
         if there.get(path) != content:

@@ -8,7 +8,7 @@ from lumen.features.fleet.rollouts.orders import FollowedOrder
 from lumen.project.home import Home
 
 MAX_KEPT = 6
-"""The number of bundles whose names in the fleet are remembered."""
+"""The most bundles whose names in the fleet are remembered."""
 
 
 @dataclass

@@ -18,7 +18,7 @@ BAD_SHARE = Code("bad-share", "fleet", ERROR, "a rollout step is not a valid sha
 
 
 def build_fleet(data: Any, report: DocumentReport, *, name: str) -> Fleet | None:
-    """Return the fleet in the data of fleet.yaml; None if the data is no map.
+    """Return the fleet in the data of fleet.yaml; None if the data is not a map.
 
     The data has the shape of fleet.schema.json, but may lack any key.
     """

@@ -47,7 +47,8 @@ def condition_faults(source: str, measures: Mapping[str, object]) -> list[Condit
 def meant(source: str, measures: Mapping[str, object]) -> str:
     """Return the condition as an expression about `context.now` and `context.before`, which hold measures by name.
 
-    `errors > 2 * before` becomes `context.now.errors > 2 * context.before.errors`. Raises ExpressionError.
+    `errors > 2 * before` becomes `context.now.errors > 2 * context.before.errors`. Raises ExpressionError if the
+    condition can't be parsed.
     """
     tree = parse_expression(source)
     rows = [row for row in _replacements(tree, measures, frozenset()) if isinstance(row, _Replacement)]

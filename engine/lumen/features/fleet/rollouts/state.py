@@ -34,7 +34,7 @@ class Rollout:
     version: int = 0
     """The version of the last order before the rollout or, after trials, before its first step."""
     prior: Mapping[str, str] = field(default_factory=dict)
-    """The proved bundles that assigned robots should run before the rollout, by robot."""
+    """The proved bundle that each assigned robot was to run before the rollout; robots without one are left out."""
     tried: bool = False
     """True if the trials before the first step are over."""
 
