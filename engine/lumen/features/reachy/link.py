@@ -24,7 +24,7 @@ SECOND_LOOK = 0.25
 """The time that Lumen waits for a message even if SILENCE is over [s], because this process may have been busy."""
 OPEN_PATIENCE = 5.0
 FIRST_RETRY_DELAY, MAX_RETRY_DELAY = 0.5, 5.0
-"""The first and the longest wait before a try to connect again [s]; each is twice as long as the last."""
+"""The first and the longest wait before an attempt to reconnect [s]; each is twice as long as the last."""
 
 _log = logging.getLogger(__name__)
 

@@ -12,7 +12,7 @@ BODY, LEFT, RIGHT = "body_yaw", "left_antenna", "right_antenna"
 JOINTS = (*HEAD, BODY, LEFT, RIGHT)
 
 LYING_HEIGHT, LYING_PITCH = -0.035, 0.3
-"""The head of a robot that sleeps is lower than this [m], and tilted farther [rad]; it sinks more with time."""
+"""The head of a robot that sleeps is lower than this [m], and tilted farther [rad]; it sinks further with time."""
 
 
 def rotation(roll: float, pitch: float, yaw: float) -> Matrix3:

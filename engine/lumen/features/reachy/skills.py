@@ -31,7 +31,7 @@ LYING_TOLERANCE, LYING_PLACE_TOLERANCE = radians(2.5), 0.003
 GRACE = 1.5
 """The time that the head may take beyond its planned duration [s]."""
 LEAST_WAY = 0.4
-"""The time that a posture takes at least [s]."""
+"""The shortest time that a change of posture takes [s]."""
 LOOK_PERIOD = 0.1
 """The period in which the daemon is asked whether a move has ended [s]."""
 ASLEEP = "Asleep"

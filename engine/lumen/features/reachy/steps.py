@@ -11,9 +11,9 @@ Steps = Generator[DaemonCall | None, Any, None]
 
 
 class StepActivity:
-    """An activity of the executor made of steps; `stop` is called if it is cancelled, and ends it at once.
+    """An activity of the executor made of steps; if it is cancelled, it ends at once, and `stop` is called.
 
-    `missed` lists the joints that did not arrive, if it ended anyway.
+    `missed` describes a goal that was not reached although the activity ended; empty without one.
     """
 
     def __init__(self, steps: Steps, stop: Callable[[], None] = lambda: None) -> None:
