@@ -33,7 +33,8 @@ _log = logging.getLogger(__name__)
 def perform(call: SkillCall) -> Mapping[str, Any]:
     """Perform a skill by its program. Raises RobotError if it fails.
 
-    Without a workshop only its time passes: in a story on purpose, otherwise with a warning.
+    Without a workshop no program runs: the call takes the skill's usual time and returns the default result, in a story
+    on purpose, otherwise with a warning.
     """
     workshop, skill = workshop_of(call.row), call.row.details
     if workshop is None or not isinstance(skill, Skill):

@@ -25,7 +25,7 @@ MAX_OUTPUT_BYTES = 1 * MEGABYTE
 """The greatest output of a program for one call, answers included [bytes]."""
 MAX_UNREAD_MESSAGES = 1_000
 MAX_PRINTED_LINES = 40
-"""The number of printed lines that are shown within `PRINT_PERIOD`; further ones are counted."""
+"""The most printed lines that are shown within `PRINT_PERIOD`; further ones are only counted."""
 PRINT_PERIOD = 1.0
 MAX_PRINTED_CHARACTERS = 300
 WRITE_PATIENCE = 1.0
@@ -94,7 +94,10 @@ class SkillProcess:
         return not self.ended
 
     def begin(self, skill: str, arguments: Mapping[str, Any], wake: Callable[[], None]) -> None:
-        """Have the program perform a call; `wake` is called on another thread when its messages arrive."""
+        """Have the program perform a call; `wake` is called on another thread when its messages arrive.
+
+        Raises RobotFailedError if the program does not read its input.
+        """
         with self._changed:
             self._call += 1
             self._messages.clear()
@@ -124,7 +127,7 @@ class SkillProcess:
                 return  # it has ended, which the other thread reports
 
     def order(self, **message: Any) -> None:
-        """Send a message about the call."""
+        """Send a message about the call. Raises RobotFailedError if the program does not read its input."""
         self.send({"call": self._call, **message})
 
     def has_news(self) -> bool:
