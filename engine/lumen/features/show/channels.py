@@ -17,7 +17,7 @@ _TERMINATED = 0x40
 
 
 def channel_level(value: Any, field: SchemaField) -> int:
-    """Return the level from 0 to 255 of a value in the field's range; True is 255, False is 0.
+    """Return the level from 0 to 255 of a value in the field's range, limited to it; True is 255, False is 0.
 
     Raises ModuleError if it is neither a number nor a boolean.
     """

@@ -19,7 +19,7 @@ KEEP_ALIVE = 0.8
 GOODBYES = 3
 """The number of packets that announce the end (E1.31, 6.2.6)."""
 MULTICAST_REACH = 8
-"""The number of routers that multicast may pass."""
+"""The most routers that multicast may pass."""
 
 
 class DmxUniverse:

@@ -4,7 +4,7 @@ import time
 from collections.abc import Callable
 
 STEADY = 3.0
-"""The time that a device must be connected until it is reported as back [s].
+"""The time that a device must stay connected before it is reported as back [s].
 
 A device that comes and goes is thus reported once.
 """

@@ -60,7 +60,7 @@ CREDENTIALS_VARIABLE = "LUMEN_MQTT_CREDENTIALS"
 MAX_PAYLOAD = 65_536
 """The largest payload that is accepted [bytes]."""
 MAX_WAITING = 1_000
-"""The number of messages that may wait for the broker's acknowledgement."""
+"""The most messages that may wait for the broker's acknowledgement."""
 FIRST_PAUSE, LONGEST_PAUSE = 1, 30
 """The first and the longest pause between two attempts to connect [s]; each is twice as long as the last."""
 KEEP_ALIVE = 15
@@ -104,7 +104,10 @@ class MqttBroker:
         self._thread.start()
 
     def send(self, route: str, body: Any) -> None:
-        """Publish a body. Raises ModuleError if the broker is away or the body can't be sent."""
+        """Publish a body; while the broker is away, a retained one waits for it.
+
+        Raises ModuleError if the body can't be sent, or if the broker is away and the topic is not retained.
+        """
         row, mapping = self._routes[route], self._link.routes[route]
         payload = payload_of(body, self._fields[route])
         if mapping.retain:
