@@ -45,7 +45,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Write the graph and return the exit code. Raises UsageError if there is no such behaviour."""
+    """Write or print the graph, and return 0. Raises UsageError if there is no such behaviour or state, or if the graph
+    can't be drawn or written as requested.
+    """
     project = lumen.load(shown_project(options.project))
     name = options.behavior or project.behavior
     if name not in project.behaviors:

@@ -39,7 +39,7 @@ def is_data(path: tuple[str, ...] | None) -> bool:
 
 
 def known(node: ExpressionNode, holds: bool) -> frozenset[tuple[str, ...]]:
-    """Return the fields that are present if the node holds (or does not hold)."""
+    """Return the fields that are certainly present if the node holds, or, with `holds` False, if it does not."""
     match node:
         case FunctionCall(function="has", arguments=(target,)) if holds:
             path = path_of(target)

@@ -48,12 +48,12 @@ class ScriptNames:
 
 
 def read_condition(source: str, names: ScriptNames) -> str:
-    """Return Lumen's expression that is true if ECMAScript's is truthy. Raises ScriptError."""
+    """Return Lumen's expression that is true if ECMAScript's is truthy. Raises ScriptError if it has no counterpart."""
     return printed(ScriptTranslator(names).condition(parse_script(source)))
 
 
 def read_value(source: str, names: ScriptNames) -> ExpressionNode:
-    """Return the tree of Lumen's expression with the same value. Raises ScriptError."""
+    """Return the tree of Lumen's expression with the same value. Raises ScriptError if it has no counterpart."""
     tree = ScriptTranslator(names).value(parse_script(source))
     printed(tree)
     return tree
@@ -83,7 +83,9 @@ class ScriptTranslator:
         return kind(node, self.names.kinds)
 
     def condition(self, tree: ExpressionNode) -> ExpressionNode:
-        """Return one of Lumen's trees that is true if the value of an ECMAScript tree is truthy. Raises ScriptError."""
+        """Return one of Lumen's trees that is true if the value of an ECMAScript tree is truthy. Raises ScriptError if
+        the latter has no counterpart.
+        """
         match tree:
             case Logic(sign=sign, operands=operands):
                 return self._logic(sign, operands)

@@ -1,4 +1,4 @@
-"""Parses the text of an ECMAScript expression to its tokens and its tree."""
+"""Parses the text of an ECMAScript expression into its tokens and its tree."""
 
 import re
 from collections.abc import Collection
@@ -29,7 +29,7 @@ class ScriptError(Exception):
 
 def tokenize_script(source: str) -> list[Token]:
     """Return the tokens of an expression, of the kinds number, text, name and sign, and a final `end`. Raises
-    ScriptError.
+    ScriptError if it is too long or can't be read.
     """
     if len(source) > MAX_EXPRESSION_LENGTH:
         raise ScriptError(f"it is longer than {MAX_EXPRESSION_LENGTH:,} characters")

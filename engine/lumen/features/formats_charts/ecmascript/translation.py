@@ -11,7 +11,7 @@ class Translation(Protocol):
     present: frozenset[tuple[str, ...]]
 
     def value(self, tree: ExpressionNode) -> ExpressionNode:
-        """Return Lumen's tree with the same value. Raises ScriptError."""
+        """Return Lumen's tree with the same value. Raises ScriptError if it has no counterpart."""
 
     def kind(self, node: ExpressionNode) -> str:
         """Return the kind of one of Lumen's trees, or UNKNOWN_KIND."""

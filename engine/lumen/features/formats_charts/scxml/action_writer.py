@@ -40,7 +40,7 @@ class ScxmlActionWriter:
         return [tag for step in steps for tag in self._one(step)]
 
     def expression(self, expression: Expression) -> str:
-        """Return an expression in ECMAScript. Raises ScriptError."""
+        """Return an expression in ECMAScript. Raises ScriptError if it can't be expressed."""
         written = write_expression(expression.source, self.vocabulary)
         self._foreign(written.foreign, expression.where)
         return written.text
@@ -112,7 +112,7 @@ class ScxmlActionWriter:
         return [XmlTag("content", {"expr": self.value(value)})]
 
     def value(self, value: ComputedValue) -> str:
-        """Return a value as ECMAScript. Raises ScriptError."""
+        """Return a value as ECMAScript. Raises ScriptError if it can't be expressed."""
         match value:
             case Expression():
                 return self.expression(value)

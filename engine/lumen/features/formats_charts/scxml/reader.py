@@ -26,7 +26,7 @@ _ID = re.compile(r"[^\s@*]+")
 
 def invocation(element: XmlElement, contents: ScxmlActionReader) -> dict[str, Any]:
     """Return an invocation of the behaviour named like the file, with its id and input. Raises LeftOutError or
-    ScriptError.
+    ScriptError if it can't be converted.
     """
     kind, source = element.get("type"), element.get("src").removeprefix("file:")
     if kind.rstrip("/") not in {p.rstrip("/") for p in PROCESSORS} or "typeexpr" in element.attributes:
@@ -50,7 +50,8 @@ def invocation(element: XmlElement, contents: ScxmlActionReader) -> dict[str, An
 
 
 def read_scxml(file: str, content: bytes, title: str) -> tuple[dict[str, Any], list[Diagnostic]]:
-    """Return the data of a behaviour file, and findings about lost and changed parts. Raises ForeignFileError.
+    """Return the data of a behaviour file, and findings about lost and changed parts. Raises ForeignFileError if the
+    file is not an SCXML document with states.
 
     `title` is the behaviour's name if the document has none.
     """
