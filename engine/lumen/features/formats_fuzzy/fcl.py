@@ -81,7 +81,9 @@ class FclSection(NamedTuple):
 
 
 def read_fcl(file: str, content: bytes, title: str) -> tuple[dict[str, Any], list[Diagnostic]]:
-    """Return the data of a controller file, and findings. Raises ForeignFileError if there is no function block."""
+    """Return the data of a controller file, and findings. Raises ForeignFileError if there is no function block, or if
+    no output or rule is left.
+    """
     findings = ConversionFindings()
     text = text_of(file, content, findings)
     reader = _FclReader(file, text, findings)

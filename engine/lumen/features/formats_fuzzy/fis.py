@@ -123,7 +123,9 @@ class FisVariable(NamedTuple):
 
 
 def read_fis(file: str, content: bytes, title: str) -> tuple[dict[str, Any], list[Diagnostic]]:
-    """Return the data of a controller file, and findings. Raises ForeignFileError if it is not a system."""
+    """Return the data of a controller file, and findings. Raises ForeignFileError if it is not a system, or if no
+    output or rule is left.
+    """
     findings = ConversionFindings()
     text = text_of(file, content, findings)
     sections = list(_sections(file, text, findings))
