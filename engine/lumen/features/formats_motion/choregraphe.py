@@ -92,7 +92,7 @@ class Flags(NamedTuple):
 
 def read_choregraphe(file: MotionFile, findings: ConversionFindings) -> JointCurves:
     """Return the curves of the timeline `file.timeline`, or of the only one if that name is empty. Raises
-    ForeignFileError.
+    ForeignFileError if there is no such timeline, or no behaviour in the file.
 
     `file.hands` are the robot's hands besides NAO's: their keys are openings.
     """

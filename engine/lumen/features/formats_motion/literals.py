@@ -37,7 +37,7 @@ def written(node: ast.AST) -> str:
 
 
 def value_of(node: ast.expr, names: Mapping[str, Any]) -> Any:
-    """Return the value of a node; `names` are the known variables. Raises NotWrittenOutError."""
+    """Return the value of a node; `names` are the known variables. Raises NotWrittenOutError if it must be computed."""
     match node:
         case ast.Constant(value=value) if value is None or isinstance(value, str | int | float):
             return value
