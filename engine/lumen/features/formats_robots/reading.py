@@ -31,7 +31,7 @@ def begins_robot(content: bytes) -> bool:
 def read_robot(file: str, content: bytes, title: str, mjcf: str) -> tuple[str, list[Diagnostic]]:
     """Return the text of the body file, and findings; `mjcf` is the model's file name in the same folder.
 
-    Raises ForeignFileError if it is not a robot's model, or has no usable joint.
+    Raises ForeignFileError if it is not a robot's model, has no usable joint, or has more than MAX_JOINTS.
     """
     root = parse_xml(file, content)
     reader = _READERS.get(root.tag)

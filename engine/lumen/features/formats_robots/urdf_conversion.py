@@ -39,7 +39,7 @@ class ConvertedRobot:
 
 
 def urdf_as_mjcf(content: bytes, folder: Path, name: str) -> ConvertedRobot:
-    """Convert a URDF that is known to be XML without entities; meshes are searched from `folder`.
+    """Convert a URDF that is known to be XML without entities; meshes are searched for, starting from `folder`.
 
     A mesh that is missing, or that MuJoCo can't read, is left out with its shape. Raises RobotModelError if MuJoCo
     can't build the rest.
