@@ -66,7 +66,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Record, repair a file or set a mark; return the exit code, 0 on success. Raises UsageError."""
+    """Record, repair a file or set a mark; return the exit code, 0 on success. Raises UsageError if an option is
+    invalid or the file can't be written.
+    """
     if options.recover:
         return _recover(options)
     span = seconds(options.span) if options.span else None

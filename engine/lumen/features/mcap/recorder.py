@@ -20,7 +20,7 @@ from lumen.upkeep.drops import DropLog
 from lumen.upkeep.threads import WatchedThread
 
 MAX_WAITING = 20_000
-"""The number of messages that may wait to be written; beyond it the oldest are dropped and counted."""
+"""The most messages that may wait to be written; beyond it the oldest are dropped and counted."""
 WRITE_PERIOD = 0.1
 """The time between two writes [s]."""
 FORGETTING_SPACING = 2.0
@@ -28,7 +28,7 @@ FORGETTING_SPACING = 2.0
 FORGETTING_SPAN = 10.0
 """The time for which a forgotten name is also removed from new messages [s]: the request to forget contains it."""
 MAX_FORGOTTEN = 100
-"""The number of names that are removed at a time."""
+"""The most names that are removed at a time."""
 FORGOTTEN_ROUTE, IMAGE_ROUTE = "forgotten", "image"
 FORGOTTEN_KEY = DEFAULT_KEYS[FORGOTTEN_ROUTE].partition("{robot}")[2]
 

@@ -36,7 +36,9 @@ class Redaction(NamedTuple):
 
 
 def redacted(path: Path, person: PersonName) -> tuple[Redaction, Changed]:
-    """Return what in a recording is about a person, and the function that removes it."""
+    """Return what in a recording is about a person, and the function that removes it. Raises RecordingError if it is
+    not a recording.
+    """
     times, messages, files = list[int](), 0, 0
     for item in read_recording(path):
         match item:

@@ -22,7 +22,7 @@ CAMERA = "camera"
 MAX_NANOSECONDS = 2**63 - 1
 """MCAP's latest time, in the year 2262."""
 MAX_TOPICS = 4_096
-"""The number of keys whose channels are cached."""
+"""The most keys whose channels are cached."""
 
 _ORIGIN_SCHEMA = {
     "type": "object",

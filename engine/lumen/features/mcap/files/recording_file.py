@@ -18,7 +18,7 @@ CHUNK_PERIOD = 0.5
 SYNC_PERIOD = 2.0
 """The time between two requests to write the file to the disk [s]."""
 MAX_CHANNELS = 60_000
-"""The number of channels: MCAP counts them with 16 bits; messages of further ones are left out."""
+"""The most channels: MCAP counts them with 16 bits; messages of further ones are left out."""
 
 
 def demand_recording() -> None:
