@@ -15,7 +15,7 @@ LEAD = 1.0
 they look.
 """
 MAX_SPANS = 100
-"""The number of open spans that are kept; a sound lasts two minutes at most."""
+"""The most open spans that are kept; a sound lasts two minutes at most."""
 NO_DISTANCE = "faces come without a `distance`, so `within` has no effect: delete it, or use Lumen's own eyes"
 Span = tuple[float, float]
 

@@ -9,7 +9,7 @@ ECHO = 0.3
 LONGEST = 60.0
 """The time after which a text without a reported end counts as over [s], so that the robot does not stay deaf."""
 MAX_KEPT = 100
-"""The number of texts that are kept; a sound lasts two minutes at most."""
+"""The most texts that are kept; a sound lasts two minutes at most."""
 _SPOKEN = ("started", "accepted")
 
 

@@ -89,14 +89,12 @@ SILENCE_LEVEL = 300
 COMMON_WORDS = 8_000
 """The number of common words that it knows besides the expected ones."""
 MAX_MODELS = 4
-"""The number of language models that are kept: each takes 0.15 s of processor time to make, and 19 MB."""
+"""The most language models that are kept: each takes 0.15 s of processor time to make, and 19 MB."""
 LOG_STEP = 1e-4
 """The base of PocketSphinx's logarithms, minus 1."""
 
 MAX_HYPOTHESES, MAX_EXAMINED = 5, 20
-"""The number of different texts that are returned, and of hypotheses that are examined: many differ only in
-silences.
-"""
+"""The most texts that are returned, all different, and the most hypotheses examined: many differ only in silences."""
 FILLERS = "<[+"
 """The first characters of silences and noises, which are not words."""
 TINY = 1e-9
