@@ -47,7 +47,9 @@ class VideoSource:
         self.period = 1.0 / rate if 1.0 <= rate <= 240.0 else 1.0 / 30.0
 
     def read(self) -> Frame | None:
-        """Return the next frame, without a time on the robot's clock; None at the end."""
+        """Return the next frame, without a time on the robot's clock; None at the end. Raises ModuleError if its size
+        is out of range.
+        """
         there, pixels = self._capture.read()
         if not there:
             return None

@@ -17,11 +17,11 @@ if TYPE_CHECKING:
 FACE_SIZE = 96
 """The width and height at which faces are compared [px]."""
 MAX_PICTURES_PER_NAME = 8
-"""The number of pictures of a face that are kept for a name."""
+"""The most pictures of a face that are kept for a name; a further one replaces the oldest."""
 MAX_DISTANCE = 70.0
 """The largest distance (chi-square of the patterns' histograms) from a known face that counts as the same."""
 MAX_PICTURES = 500
-"""The number of pictures of all names; beyond it no new face is learnt."""
+"""The most pictures of all names; beyond it no new face is learnt."""
 
 
 class FaceGallery:

@@ -13,7 +13,7 @@ from typing import Any
 WINDOW_HOST = "127.0.0.1"
 """Only this machine may see the pictures of visitors."""
 MAX_CONNECTIONS = 8
-"""The number of open connections; a further one is closed without an answer."""
+"""The most open connections; a further one is closed without an answer."""
 REQUEST_TIMEOUT = 5.0
 """The time in which a request must arrive, and a picture must be read [s]."""
 
