@@ -38,7 +38,7 @@ class Chat:
         return [Call(name, self._arguments.get(at, "")) for at, name in sorted(self._names.items())]
 
     def read(self, kind: str, pieces: Iterable[bytes]) -> Iterator[Piece]:
-        """Yield the text piece by piece; `kind` is the answer's media type. Raises ModuleError if it is no chat
+        """Yield the text piece by piece; `kind` is the answer's media type. Raises ModuleError if it is not a chat
         completion.
         """
         if kind == "text/event-stream":

@@ -52,7 +52,7 @@ if TYPE_CHECKING:
     from lumen.retrieval.retriever import FoundAnswer, Retriever
 
 MAX_KEPT = 20_000
-"""The number of texts whose vectors are kept."""
+"""The most texts whose vectors are kept; beyond it all are forgotten and computed again."""
 UNTRIED = ((20.0, 20.0, 20.0, 0.0, 10.0, 5.0), 80.0)
 """The weights of meanings and words, and the offset, for an exhibition without questions: only the order matters
 then.

@@ -39,9 +39,9 @@ class ModelSettings(NamedTuple):
     server: ServerSettings | None
     """The model's server; None if only embeddings are used."""
     hour: int = 60
-    """The number of questions per hour."""
+    """The most questions per hour."""
     visitor: int = 10
-    """The number of questions per visitor."""
+    """The most questions per visitor."""
 
     @classmethod
     def of(cls, options: Mapping[str, Any]) -> "ModelSettings":
