@@ -56,14 +56,14 @@ class Ration:
 
 
 MAX_PENDING_ALERTS = 100
-"""The number of alerts that may wait for the thread; beyond it the oldest are dropped."""
+"""The most alerts that may wait for the thread; beyond it the oldest are dropped."""
 FIRST_RETRY, LONGEST_RETRY = 1.0, 300.0
 """The first and the longest wait before another attempt [s]; each is twice as long as the last."""
 RETRY_FOR = 3_600.0
 """The time for which delivery of an alert is attempted [s]."""
 
 Deliver = Callable[[Alert], None]
-"""Delivers an alert and waits for the result. Raises UndeliveredError."""
+"""Delivers an alert and waits for the result. Raises UndeliveredError if it did not arrive."""
 
 
 def time_of_day() -> TimeOfDay:
