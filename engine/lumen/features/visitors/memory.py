@@ -21,7 +21,7 @@ from lumen.run.module import DAY, KEEP_DAYS, Module
 DATABASE_FILE = "memory.db"
 """The name of the database's file in the home of an exhibition."""
 MAX_PENDING_ENTRIES = 10_000
-"""The number of entries that may wait for an unwritable database; beyond it the oldest are dropped."""
+"""The most entries that may wait for an unwritable database; beyond it the oldest are dropped."""
 RETRY_INTERVAL = 1.0
 """The time between two attempts to write to an unwritable database [s]."""
 EXPIRY_INTERVAL = 3_600.0
