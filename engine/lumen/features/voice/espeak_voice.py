@@ -14,7 +14,7 @@ INSTALL_VOICE = "pip install 'lumen-robot[voice]', or install the package espeak
 WORDS_PER_MINUTE = 175
 """The default pace of speech."""
 MAX_TEXT_CHARACTERS = 1_000
-"""The number of characters of a text that are spoken; the rest is not."""
+"""The most characters of a text that are spoken; the rest is left out."""
 
 _SYNCHRONOUS, _DONT_EXIT, _UTF8, _CHARACTERS, _RATE = 2, 0x8000, 1, 1, 1
 
@@ -34,7 +34,9 @@ _Callback = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.POINTER(ctypes.c_short), ctype
 
 
 class Espeak:
-    """The library, of which a process has one, returned by `espeak()`. It may be used from any thread."""
+    """The library, of which a process has one, returned by `espeak()`. Any thread may use it. Raises ModuleError if it
+    or its data can't be loaded.
+    """
 
     def __init__(self, library: str, data: str | None) -> None:
         try:

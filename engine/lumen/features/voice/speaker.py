@@ -24,7 +24,7 @@ class Speaker:
 
     With a `file` it writes the sound of the whole run, each text at its simulated time; otherwise the machine's own
     player plays it. The sound is also added to `heard`, if given. Texts in languages that espeak-ng lacks are spoken in
-    `language`.
+    `language`. Raises ModuleError if espeak-ng is missing.
     """
 
     def __init__(self, language: str, file: Path | None, heard: AudioTrack | None = None) -> None:
