@@ -183,7 +183,7 @@ class KnownRobot:
     def _ahead(self, told: object) -> float:
         """Return how far the exhibition's clock, which a story can set, is ahead of ours [s].
 
-        A time that cannot be read, or a difference below CLOCK_TOLERANCE, leaves the former value.
+        A time that cannot be read, or a difference below CLOCK_TOLERANCE, leaves the previous value.
         """
         before = float(self.said.get("ahead", 0.0))
         try:

@@ -63,7 +63,7 @@ def verdict_outcome(answer: Any) -> str | None:
 
 
 def reload_outcome(answer: Any) -> str | None:
-    """Return why an order about files was refused, empty if not; None for an answer that is not the final one."""
+    """Return why an order about files was refused, empty if it was not; None if further answers follow."""
     match answer:
         case {"final": False}:
             return None

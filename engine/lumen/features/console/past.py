@@ -97,7 +97,10 @@ class Past:
         return as_json(await self.explained(view, question, what, request.query_params.get("at") or None))
 
     async def explained(self, view: KnownRobot, question: OperatorRequest, what: str, at: str | None) -> dict[str, Any]:
-        """Return why something happened, or did not: from the exhibition, else the journal. Raises DeniedError."""
+        """Return why something happened, or did not: from the exhibition, else the journal.
+
+        Raises DeniedError if neither knows.
+        """
         try:
             said = await self._request(view, question(what=what, **({"at": at} if at else {})))
         except DeniedError:  # its journal may hold the answer
@@ -171,7 +174,10 @@ class Past:
         return _as_entries(found[:MAX_FOUND], more=len(found) > MAX_FOUND or begin > first + MAX_SEARCHED)
 
     async def between(self, view: KnownRobot, first: int, last: int) -> list[EncodedEntry]:
-        """Return the first entries between two positions, at least `MAX_SHOWN` or all. Raises DeniedError."""
+        """Return the first entries between two positions, at least `MAX_SHOWN` or all.
+
+        Raises DeniedError if neither the exhibition nor this machine's journal can be read.
+        """
         try:
             return await self._source.entries(view, first, last)
         except BusError as error:

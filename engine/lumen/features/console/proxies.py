@@ -13,7 +13,7 @@ Address = ipaddress.IPv4Address | ipaddress.IPv6Address
 
 
 def network_of(text: str) -> Network:
-    """Return the network that an address, or a network such as `10.0.0.0/8`, names. Raises ValueError."""
+    """Return a network such as `10.0.0.0/8`, or that of a single address. Raises ValueError if the text is neither."""
     return ipaddress.ip_network(text, strict=False)
 
 
@@ -46,7 +46,7 @@ class TrustedProxies:
         return seen
 
     def _first_stranger(self, addresses: list[str]) -> str:
-        """Return the last address that no trusted proxy has; empty if there is none, or a later text is no address.
+        """Return the last address that no trusted proxy has; empty if there is none, or a later text is not an address.
         Each proxy appends its peer.
         """
         for text in reversed(addresses):
