@@ -72,7 +72,7 @@ class CatchStep:
         self._start = falling.soles[self._swings] - falling.soles[self._rests]
 
     def advance(self, now: float, measured: Mapping[str, float]) -> dict[str, float]:
-        """Return the angles of the legs' joints for `now` [s] in [rad]; `measured` are the present ones."""
+        """Return the goals of the legs' joints at `now` [s] as angles [rad]; `measured` are the present angles."""
         gone = now - self._begin
         part = min(1.0, (gone + _LOOK_AHEAD) / self._seconds)
         falling, left = self._falling, max(self._seconds - gone, 0.0)

@@ -26,7 +26,7 @@ LEANING_TILT, FALLING_TILT = 15.0, 30.0
 
 DONE, FELL = "done", "fell"
 MAX_FOOT_SLIDE = 0.01
-"""The slide of a foot under load that is accepted [m]."""
+"""The largest slide of a foot under load that is accepted [m]."""
 
 BEARING_FORCE = 5.0
 """The force above which a foot bears load [N]."""

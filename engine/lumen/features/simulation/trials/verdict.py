@@ -12,19 +12,19 @@ from lumen.lint.on_request import COMES_LATE, FALLS, FEET_SLIDE, NOT_PLAYED, OVE
 from lumen.ports import Live
 
 MAX_CONTACT_TIME = 0.04
-"""The duration of a contact between two links that is accepted [s]."""
+"""The longest contact between two links that is accepted [s]."""
 
 MAX_FULL_TORQUE_TIME = 0.3
-"""The time at full torque that is accepted of a motor [s]."""
+"""The longest time for which a motor may give its full torque without a pause [s]."""
 
 MAX_JOINT_LAG = 0.35
-"""The distance of a joint behind the motion that is accepted [rad]."""
+"""The largest distance of a joint behind the motion that is accepted [rad]."""
 
 MAX_LIVING_TILT = 5.0
-"""The lean of the torso that is accepted in lifelike movements [degrees]: the shipped styles reach 0.5."""
+"""The largest lean of the torso that is accepted in lifelike movements [degrees]: the shipped styles reach 0.5."""
 
 MAX_FAILED_SHARE = 0.1
-"""The share of attempts at a passage that may fail, since the robot retries it."""
+"""The largest share of attempts at a passage that may fail: the robot retries it."""
 
 _FEET = {"L": "the left foot", "R": "the right foot"}
 _JOINTS = (COMES_LATE, OVERLOADED)
