@@ -36,7 +36,7 @@ def broken_files(files: Mapping[str, bytes], before: Mapping[str, bytes]) -> dic
 def follows(finding: Diagnostic, broken: Mapping[str, BrokenFile], known: KnownFindings) -> bool:
     """Return True if a finding may result only from the unreadable part of a file.
 
-    It is in or around that part, quotes a word of it, or is no error and not among the earlier findings `known`.
+    It is in or around that part, quotes a word of it, or is neither an error nor among the earlier findings `known`.
     """
     here = broken.get(finding.place.file)
     if here and (here.mended is None or finding.place.line - 1 in here.mended.around | here.mended.cut):

@@ -170,7 +170,7 @@ _OPAQUE = frozenset(("context", "types", "events", "phrases", "answers", "rename
 
 @lru_cache(maxsize=MAX_REMEMBERED_PATHS)
 def key_kind(kind: str, path: NodePath) -> NameKind | None:
-    """Return the kind of name in the key at the end of a path, in a file of that kind; None if it is no name."""
+    """Return the kind of name in the key at the end of a path, in a file of that kind; None if it is not a name."""
     steps = _steps(path)
     if kind == "sayings":
         return _SAYINGS[len(steps) - 1] if len(steps) <= len(_SAYINGS) else None

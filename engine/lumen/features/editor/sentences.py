@@ -49,7 +49,7 @@ def of_patterns(draft: ProjectDraft, phrases: Iterable[str]) -> Iterator[str]:
 
 
 def of_phrase_at(analysis: Analysis, file: str, path: NodePath) -> str:
-    """Return sample sentences with the phrase at a path; empty if it is no text."""
+    """Return sample sentences with the phrase at a path; empty if it is not a text."""
     text = analysis.documents[file].value(path)
     if not isinstance(text, str):
         return ""
