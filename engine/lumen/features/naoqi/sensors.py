@@ -23,7 +23,7 @@ DEFAULT_IMAGE_SIZE = Size(320, 240)
 CAMERA_RATE = 30
 """The camera's images per second; the route's rate decides how many are fetched."""
 CLOCK_OFFSET_FRAMES = 100
-"""The offset between the robot's clock and Lumen's is that of the fastest to arrive of this many recent images."""
+"""Of this many recent images, the fastest to arrive shows the offset between the robot's clock and Lumen's."""
 
 _log = logging.getLogger(__name__)
 
@@ -118,7 +118,7 @@ class NaoqiSensors:
     def battery(self) -> Battery:
         """Return the battery's charge [%], and whether it is plugged in and charging.
 
-        Raises SenseError without a charge.
+        Raises SenseError if the robot reports no charge.
         """
         now = self._clock()
         charge, plugged, charging = self._memory([CHARGE, PLUGGED, CHARGING])

@@ -181,8 +181,8 @@ class NaoqiSession:
     def request(self, service: str, method: str, *arguments: Any, patience: float = 0.0) -> Any:
         """Call a method, wait for NAOqi's answer and return it. Only for threads that may wait.
 
-        The wait is at most the longer of `patience` and the session's [s]. Raises RobotError; a robot that does not
-        answer in that time is lost.
+        The wait is at most the longer of `patience` and the session's [s]. Raises RobotError if the call fails; a robot
+        that does not answer in that time is lost.
         """
         call, session, patience = self.post(service, method, *arguments), self._session, max(patience, self._patience)
         if not call.wait(patience):

@@ -13,7 +13,7 @@ NAO = "nao.local"
 def set_up(request: RobotRequest) -> Setup:
     """Return the robot at the address in the option `url`, with its clock and its hall.
 
-    Raises UsageError for a story or another speed than 1, and RobotError if there is no such robot.
+    Raises UsageError for a story or a speed other than 1, and RobotError if there is no such robot.
     """
     if request.speed != "1":
         raise UsageError("a real robot runs in real time: leave out --speed")

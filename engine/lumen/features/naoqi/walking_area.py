@@ -45,7 +45,10 @@ class WalkingArea:
         self._origin = self._origin or place
 
     def whereabouts(self, place: GroundPose) -> Whereabouts:
-        """Return the robot's place on the stage from NAOqi's; call it often, since it also sums up the uncertainty."""
+        """Return the robot's place on the stage for NAOqi's `place`.
+
+        Call it often, since it also sums up the uncertainty.
+        """
         self.meet(place)
         assert self._origin is not None
         x, y = self._on_stage(place)
