@@ -6,7 +6,7 @@ from typing import Any, Protocol
 
 
 class AskedConnection(Protocol):
-    """The connection that such a channel needs: it can wait for a condition or a time [s], and open more channels."""
+    """The connection of an `AskedChannel`: it can wait for a condition or a time [s], and open more channels."""
 
     def until(self, done: Callable[[], object]) -> None: ...
 

@@ -24,7 +24,7 @@ from lumen.features.rabbitmq.poll_loop import PollLoop
 from lumen.features.rabbitmq.wire import MessageReader, WireConnection
 
 STALL_TIME = 0.5
-"""The excess of a turn over its planned time that means that this process was suspended [s]."""
+"""If a turn takes longer than planned by more than this, the process was suspended [s]."""
 
 
 class TurnClock:

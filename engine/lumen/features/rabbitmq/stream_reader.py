@@ -14,7 +14,7 @@ from lumen.features.rabbitmq.probe import BrokerProbe
 from lumen.features.rabbitmq.properties import MessageProperties
 
 PREFETCH = 200
-"""The number of messages that the broker sends ahead: a stream requires a limit."""
+"""The most messages that the broker sends ahead: a stream requires a limit."""
 MOST_READ = 2000
 """The most messages that may wait for `take`; beyond it no more are requested."""
 TURN = 0.2

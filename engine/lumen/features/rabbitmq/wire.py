@@ -17,7 +17,7 @@ from lumen.features.rabbitmq.properties import MessageProperties, TolerantConnec
 FLUSH_BYTES = 8 * 1024
 """The number of bytes from which frames are sent at once; fewer wait for the next turn."""
 READ_BYTES = 64 * 1024
-"""The number of bytes that one system call reads, one per turn: pika would read until nothing is left."""
+"""The most bytes that one system call reads, one per turn: pika would read until nothing is left."""
 
 MessageReader = Callable[[int, bool, bytes, MessageProperties, bytes], None]
 """A function that receives a message's number, whether it may be a repetition, its key, properties and body."""
