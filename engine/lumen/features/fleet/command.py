@@ -69,7 +69,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Run the subcommand in `options.what` and return 0. Raises UsageError, ProjectError or BusError."""
+    """Run the subcommand in `options.what` and return 0. Raises UsageError, ProjectError or BusError if it fails."""
     root = Path(options.project or ".")
     match options.what:
         case "keygen":
@@ -203,7 +203,7 @@ def _asked(options: argparse.Namespace, root: Path, body: Mapping[str, Any], wha
 
 
 def _connected(url: str, sender: str) -> Bus:
-    """Return a connection to the centre's bus. Raises BusError with the remedy."""
+    """Return a connection to the centre's bus. Raises BusError, with the remedy, if that fails."""
     try:
         return connect(url, sender=sender)
     except BusUnreachableError as error:
