@@ -99,7 +99,7 @@ class DaemonApi:
         """Make a request on this thread; return the JSON data of the answer, None if the answer is empty.
 
         It waits at most `patience` [s]. Raises RobotLostError if the daemon does not answer, RobotFailedError if it
-        refuses or answers something else than JSON.
+        refuses or answers anything but JSON.
         """
         content = None if body is None else json.dumps(body).encode()
         return self._request(method, path, content, {"Content-Type": "application/json"} if content else {}, patience)

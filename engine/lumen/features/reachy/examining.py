@@ -13,7 +13,10 @@ DoctorFinding = tuple[str, str, str]
 
 
 def examine(options: Mapping[str, str]) -> Iterator[DoctorFinding]:
-    """Yield the findings about the daemon at the option `url`. Raises UsageError if that is not an address."""
+    """Yield the findings about the daemon at the address in the option `url`.
+
+    Raises UsageError if that is not an address.
+    """
     try:
         demand("reachy", "a Reachy Mini", "websockets")
     except MissingExtraError as error:

@@ -19,7 +19,7 @@ LOOK_PERIOD = 0.4
 STRAY_ANGLE, STRAY_PLACE = radians(14), 0.014
 """A head farther than this from all targets that Lumen sent lately is moved by something else [rad], [m]."""
 LATELY = 0.5
-"""The time in which the head may be at a sent target [s]."""
+"""The head may be at a target that was sent up to this long ago [s]."""
 STRAYS, STRAY_TIME = 6, 1.0
 """The number of such measurements within that time [s] that shows that something else moves the head."""
 STILL_ANGLE, STILL_PLACE, STILL_TIME = radians(1.5), 0.002, 2.0

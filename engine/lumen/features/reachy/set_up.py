@@ -23,7 +23,10 @@ class TypedVisitors:
 
 
 def set_up(request: RobotRequest) -> Setup:
-    """Return the robot whose daemon is at the option `url`. Raises UsageError for a story, or for another speed."""
+    """Return the robot whose daemon is at the address in the option `url`.
+
+    Raises UsageError for a story or a speed other than 1, and RobotError if there is no such robot.
+    """
     if request.speed != "1":
         raise UsageError("a real robot runs in real time: leave out --speed")
     if request.story:

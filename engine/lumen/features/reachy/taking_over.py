@@ -21,7 +21,7 @@ _log = logging.getLogger(__name__)
 def take_over(api: DaemonApi, body: Body) -> None:
     """Check that `body` is a Reachy Mini, and start the robot if the daemon has not.
 
-    Raises RobotError if it is none, if the daemon does not answer, or if it can't start the robot.
+    Raises RobotError if it is not, if the daemon does not answer, or if it can't start the robot.
     """
     if not stands_on_rods(body):
         raise RobotModelError(f"{body.name} is no Reachy Mini: write `model: reachy_mini` under `robot` of lumen.yaml")
