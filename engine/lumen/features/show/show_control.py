@@ -152,9 +152,9 @@ class ShowControl(Module):
         return DmxUniverse(link, fields, f"Lumen {self.project.robot}", self._health(f"DMX universe {link.universe}"))
 
     def _foreign(self, link: MqttLink) -> Mapping[str, TopicMapping]:
-        """Return the routes except those that the bus's own broker carries as MQTT.
+        """Return the routes except those that the bus's own broker carries as MQTT; report these.
 
-        The messages of these would return for ever.
+        Their messages would circulate for ever.
         """
         project, routes = self.project, dict(link.routes)
         broker = self.bus.ability(UsesBroker)
