@@ -83,8 +83,9 @@ class ScriptTranslator:
         return kind(node, self.names.kinds)
 
     def condition(self, tree: ExpressionNode) -> ExpressionNode:
-        """Return one of Lumen's trees that is true if the value of an ECMAScript tree is truthy. Raises ScriptError if
-        the latter has no counterpart.
+        """Return a Lumen tree that is true if the value of an ECMAScript tree is truthy.
+
+        Raises ScriptError if there is no such tree.
         """
         match tree:
             case Logic(sign=sign, operands=operands):
@@ -120,9 +121,7 @@ class ScriptTranslator:
         return guarded(self, Unary("!", Binary("in", node, _FALSY)), node)
 
     def value(self, tree: ExpressionNode) -> ExpressionNode:
-        """Return a Lumen tree with the same value as an ECMAScript tree. Raises ScriptError if the latter has no
-        counterpart.
-        """
+        """Return a Lumen tree with the same value as an ECMAScript tree. Raises ScriptError if there is none."""
         match tree:
             case Literal(value=int() as value) if not isinstance(value, bool) and not MIN_INT <= value <= MAX_INT:
                 return Literal(float(value))
