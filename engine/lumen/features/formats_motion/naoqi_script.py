@@ -67,8 +67,9 @@ class ScriptReading:
         self.called = False
 
     def run(self, body: list[ast.stmt], around: Branch = Branch.ALWAYS) -> Any:
-        """Follow statements in their order; return the value of their `return`, None if it can't be computed. Raises
-        TooManyStepsError.
+        """Follow statements in their order; return the value of their `return`, None if it can't be computed.
+
+        Raises TooManyStepsError if they take too many steps.
         """
         for statement, branch in statements(body, around, self._items):
             if isinstance(statement, FunctionNode):
@@ -360,7 +361,7 @@ def _joints(name: Any) -> tuple[Any, ...]:
 
 
 def _rows(times: Any, keys: Any, joints: int) -> list[tuple[list[Any], list[Any]]] | None:
-    """Return times and keys of each joint, in every form that ALMotion accepts; None if they do not match.
+    """Return the times and keys of each joint, given in any form that ALMotion accepts; None if they do not match.
 
     The forms are: one time for all, one time or angle for each joint, or a list for each of them; for a single joint,
     its own list.
