@@ -233,7 +233,7 @@ class _MjcfReader:
         return span[0] * self.angle, span[1] * self.angle
 
     def held(self, joint: XmlElement, motor: XmlElement | None, low: float | None, high: float | None) -> None:
-        """Report a servo that holds its joint in less than the joint's range; its goals are in [rad]."""
+        """Report a servo whose goals [rad] do not cover its joint's range, or are scaled by a `gear`."""
         if motor is None or motor.tag != "position":
             return
         span, gear = self.numbers.all(motor, "ctrlrange", 2), self.gear(motor)
@@ -255,7 +255,7 @@ class _MjcfReader:
         return float(word) if _is_number(word := (motor.get("gear", "1").split() or ["1"])[0]) else 1.0
 
     def effort(self, joint: XmlElement, motor: XmlElement | None) -> float | None:
-        """Return the greatest torque [N m] by model and motor; None if neither has one."""
+        """Return the greatest torque [N m] that both the joint and its motor allow; None if neither has a limit."""
         most = []
         if span := self.numbers.all(joint, "actuatorfrcrange", 2):
             most.append(max(span))
