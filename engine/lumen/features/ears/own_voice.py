@@ -14,7 +14,7 @@ _SPOKEN = ("started", "accepted")
 
 
 class Utterance(NamedTuple):
-    """A text that the robot says, from `begin` to `end` [s]; empty if the text is unknown."""
+    """A text that the robot says, empty if it is unknown, from `begin` to `end` [s]."""
 
     text: str
     begin: float
