@@ -41,7 +41,7 @@ class ModelSettings(NamedTuple):
     hour: int = 60
     """The most questions per hour."""
     visitor: int = 10
-    """The most questions per visitor."""
+    """The most questions per visit."""
 
     @classmethod
     def of(cls, options: Mapping[str, Any]) -> "ModelSettings":

@@ -9,7 +9,7 @@ from lumen.features.answers.model_settings import ServerSettings
 from lumen.features.answers.vectors import KnownText, TextVector, unit
 
 BATCH = 32
-"""The number of texts in one request."""
+"""The most texts in one request."""
 MAX_BYTES = 4_000_000
 """The largest answer [bytes]: 32 vectors of 4,096 numbers as text."""
 
