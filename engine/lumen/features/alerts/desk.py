@@ -42,7 +42,7 @@ def address(channel: AlertChannel) -> str:
 
 
 CLOSE_TIMEOUT = 10.0
-"""The time that the end of a process waits for alerts to arrive [s]."""
+"""The longest time that the end of a process waits for alerts to arrive [s]."""
 
 
 class AlertDesk:

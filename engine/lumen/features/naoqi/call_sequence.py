@@ -9,7 +9,7 @@ from lumen.errors import RobotError, RobotFailedError
 from lumen.features.naoqi.session import NaoqiCall
 
 CANCEL_TIMEOUT = 1.5
-"""The time for which a cancelled command may continue [s]: a walk ends after the step in the air."""
+"""The longest time for which a cancelled command may continue [s]: a walk ends after the step in the air."""
 
 ABORT_RETRY_PERIOD = 0.25
 """The time between two repetitions of the abort [s]: NAOqi may have received an abort before the command itself."""

@@ -15,7 +15,7 @@ FALL_DRIFT = 0.6
 MOST_BETWEEN_LOOKS = 0.5
 """A larger distance between two readings of the position means that the odometry was reset [m]."""
 MAX_STAGE_DRIFT = 0.03
-"""The distance by which a walk to a place may leave the stage [m]."""
+"""The greatest distance by which a walk to a place may leave the stage [m]."""
 
 GroundPose = Sequence[float]
 """x, y [m] and theta [rad], as from `ALMotion.getRobotPosition`."""

@@ -26,7 +26,7 @@ from lumen.language.routes import Carried, Direction, Route
 from lumen.ports import Bus, Message, MessageHandler, Outgoing
 
 CLOSE_TIMEOUT = 5.0
-"""The time that closing may take [s]: waiting messages are sent, and received ones handled."""
+"""The time limit of closing [s]: waiting messages are sent, and received ones handled."""
 
 _log = logging.getLogger(__name__)
 

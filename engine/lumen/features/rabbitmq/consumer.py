@@ -24,7 +24,7 @@ from lumen.upkeep.drops import DropLog
 PREFETCH = 64
 """The most deliveries that the broker sends ahead for each subscription."""
 BIND_TIMEOUT = 5.0
-"""The time that a subscription waits for the broker to confirm it [s]."""
+"""The longest time that a subscription waits for the broker to confirm it [s]."""
 TURN_TIME = 1.0
 """The longest time in one turn of the connection [s]."""
 FLOOD_PAUSE = 0.02

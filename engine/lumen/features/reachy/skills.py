@@ -37,7 +37,7 @@ LOOK_PERIOD = 0.1
 ASLEEP = "Asleep"
 """The posture in which the robot rests."""
 FOREIGN_PATIENCE = 8.0
-"""The time that waking waits for the end of another program's move [s]."""
+"""The longest time that waking waits for the end of another program's move [s]."""
 
 
 class ReachySkills:

@@ -33,7 +33,7 @@ MAX_WALK_DISTANCE = 10.0
 """The longest walk that is accepted [m]."""
 
 MAX_STAGE_DRIFT = 0.02
-"""The distance beyond the stage at which a later step may be planned [m]: each foot lands a little off its plan."""
+"""The most that a later step may be planned beyond the stage [m]: each foot lands a little off its plan."""
 
 ARRIVAL_TOLERANCE, HEADING_TOLERANCE = 0.02, 0.05
 """The distance [m] and the angle [rad] from its goal beyond which a finished walk has failed."""

@@ -122,7 +122,7 @@ def _parameters(function: ast.FunctionDef, schema: Mapping[str, Any]) -> Iterato
 
 
 def _annotation(parameter: ast.arg, schema: Mapping[str, Any]) -> Iterator[CodeFault]:
-    """Report an annotation that names another type than the schema of the argument."""
+    """Report an annotation whose type differs from that in the argument's schema."""
     said, kind = parameter.annotation, schema.get("type")
     if not (isinstance(said, ast.Name) and said.id in _KINDS and isinstance(kind, str)):
         return

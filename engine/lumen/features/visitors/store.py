@@ -16,7 +16,7 @@ from lumen.language.people import PersonName, name_key
 from lumen.upkeep.own_folders import private_folder
 
 LOCK_TIMEOUT = 0.5
-"""The time to wait for a locked database [s]."""
+"""The longest wait for a locked database [s]."""
 MAX_ROWS = 1_000
 """The most rows of one answer."""
 

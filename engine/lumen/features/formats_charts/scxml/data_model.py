@@ -99,7 +99,7 @@ class ScxmlDataModel:
             )
 
     def _widen(self, outline: ScxmlStateTree) -> None:
-        """Find the keys that receive values of another kind than their first."""
+        """Find the keys that receive values of a kind other than their first value's."""
         assigned = [e for e in outline.scxml.walk() if e.tag == "assign" and e.get("location") in self.keys]
         for turn in range(MAX_KIND_PASSES):
             before = len(self.wide)
