@@ -104,6 +104,15 @@ def test_a_file_that_is_not_read_is_reported_once(tmp_path: Path, file: str, hin
         (root / file).unlink()
 
 
+def test_a_copy_of_a_file_that_is_read_is_left_alone(tmp_path: Path) -> None:
+    root = tmp_path / "hall"
+    copied_project(ROOT / "examples/minimal", root)
+    read = next((root / "behaviors").glob("*.yaml"))
+    for copy in (read.with_suffix(""), read.with_suffix(".yalm"), read.with_suffix(".json")):
+        copy.write_text("")
+    assert hints(root) == {}
+
+
 def test_files_of_other_programs_are_left_alone(project: Path) -> None:
     assert hints(project).keys().isdisjoint(RIGHT)
 

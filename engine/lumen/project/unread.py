@@ -64,7 +64,8 @@ def _within(root: Path, folder: str, models: Collection[str], look: Callable[[Pa
     look(root / folder)
     misnamed = {each.there.rstrip("/"): PurePosixPath(each.meant).name for each in misnamed_in(root, folder)}
     endings = (_SCHEMA_ENDING,) if folder == MESSAGES else endings_in(folder)
-    for name in listed_in(root, folder):
+    listed = listed_in(root, folder)
+    for name in listed:
         path = f"{folder}/{name}"
         if endings and name.endswith(endings):
             continue
@@ -84,7 +85,7 @@ def _within(root: Path, folder: str, models: Collection[str], look: Callable[[Pa
             elif not (is_robots_own(path) and _has_own(root, path)):  # such a folder is reported with its motions
                 yield from _of_folder(root, path, models, look)
         else:
-            yield from _of_file(folder, name)
+            yield from _of_file(folder, name, listed)
 
 
 def _of_folder(root: Path, folder: str, models: Collection[str], look: Callable[[Path], object]) -> Iterator[Unread]:
@@ -138,8 +139,11 @@ def robots_own_hint(name: str, models: Collection[str]) -> str:
     return f"name the folder after a robot model: {did_you_mean(name, models, 'available:')}"
 
 
-def _of_file(folder: str, name: str) -> Iterator[Unread]:
-    """Yield a file with an ending that is nearly right, or right in another folder; backups are left out."""
+def _of_file(folder: str, name: str, listed: Collection[str]) -> Iterator[Unread]:
+    """Yield a file with an ending that is nearly right, or right in another folder.
+
+    Backups are left out, and copies of a file that is read: `listed` are the names in the folder.
+    """
     stem, dot, ending = name.rpartition(".")
     if name.endswith(("~", ".bak", ".orig", ".tmp")) or stem.isupper() or not endings_in(folder):
         return
@@ -153,7 +157,7 @@ def _of_file(folder: str, name: str) -> Iterator[Unread]:
         meant = f"{name}.yaml" if name == name.lower() else ""
     else:
         meant = f"{stem}.yaml" if ending == "json" or nearest(ending.lower(), ("yaml",)) else ""
-    if meant and meant != name:
+    if meant and meant not in listed:
         message = f"Lumen does not read this: its name does not end in {_ending_of(meant)}"
         yield Unread(f"{folder}/{name}", message, f"rename it to {meant}")
 

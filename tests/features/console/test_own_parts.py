@@ -67,6 +67,7 @@ def states(browser: Browser) -> dict[str, Any]:
     return dict(browser.robots[0]["skill_states"])
 
 
+@pytest.mark.rest
 def test_a_workshop_reports_the_states_of_its_skills(root: Path) -> None:
     with stage(root) as made:
         assert {name: one["state"] for name, one in made.workshop.states.items()} == dict.fromkeys(
