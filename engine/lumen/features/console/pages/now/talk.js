@@ -79,7 +79,7 @@ export function Lines({ robot }) {
         ${
           line.sentence &&
           may("author") &&
-          html` <button type="button" class="plain edit-sentence" title=${t("sentence.edit")}
+          html` <button type="button" class="plain edit-sentence" disabled=${!isHere(robot)} title=${t("sentence.edit")}
           aria-label=${t("sentence.of", { text: line.text })} onClick=${() => edit(line.sentence ?? null)}>✎</button>`
         }
       </li>`,
