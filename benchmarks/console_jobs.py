@@ -47,7 +47,7 @@ QUESTION = "what is the meaning of life"
 FIND = """
 const [selector, text, done] = arguments;
 const find = () => [...document.querySelectorAll(selector)].filter((one) => one.checkVisibility())
-  .find((one) => one.innerText.includes(text)) ?? null;
+  .find((one) => (one.innerText || one.textContent).includes(text)) ?? null; // no innerText outside of the window
 const before = find(), top = before?.getBoundingClientRect().top;
 requestAnimationFrame(() => requestAnimationFrame(() => {
   done(before && find() === before && before.getBoundingClientRect().top === top ? before : null);
