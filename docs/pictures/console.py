@@ -100,7 +100,7 @@ class Camera:
         options = webdriver.ChromeOptions()
         for argument in ("--headless=new", "--no-sandbox", "--hide-scrollbars", "--lang=en-GB", "--disable-gpu"):
             options.add_argument(argument)
-        options.page_load_strategy = "none"  # each picture waits for what it shows
+        options.page_load_strategy = "none"  # each picture waits for its own text
         self.driver = webdriver.Chrome(options, Service(shutil.which("chromedriver")))
 
     def look(self, path: str, size: tuple[int, int] = WIDE, *, dark: bool = False) -> None:
