@@ -11,6 +11,7 @@ from lumen.cli.typed import MAX_LINE_CHARACTERS, MAX_WAITING_LINES, TypedVisitor
 from lumen.cli.typed_commands import TypedCommands
 from lumen.errors import BusError
 from lumen.language.routing_keys import default_key
+from lumen.upkeep.threads import ThreadWatch
 from tests.tables import for_each
 from tests.waiting import until
 
@@ -44,6 +45,30 @@ def test_a_line_without_end_fills_no_memory_and_holds_up_no_tick(monkeypatch: py
     assert not part.over
     part.tick(7.0, ())
     assert part.over
+
+
+class ClosedTerminal(EndlessInput):
+    """A terminal that was closed after one line."""
+
+    def isatty(self) -> bool:
+        return True
+
+    def readline(self, size: int) -> str:
+        self.calls += 1
+        if self.calls > 1:
+            raise OSError(5, "Input/output error")
+        return "hello"
+
+
+def test_a_closed_terminal_is_the_end_of_the_visit_and_no_fault(monkeypatch: pytest.MonkeyPatch) -> None:
+    terminal, visitor, watch = ClosedTerminal(), Mock(), ThreadWatch()
+    monkeypatch.setattr("sys.stdin", terminal)
+    who: Any = SimpleNamespace(needs=(), actor=visitor, environment=Mock())
+    part = TypedVisitorPart(who, Mock(), "", lambda: None)
+    part.begin(0.0)
+    until(lambda: part.tick(0.0, ()) or visitor.leave.called)
+    assert [call.args for call in visitor.speak.call_args_list] == [("hello",)]
+    assert (terminal.calls, watch.tick()) == (2, [])
 
 
 class Hall:

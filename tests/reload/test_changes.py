@@ -59,6 +59,12 @@ NOT_COMPARED = {"documents", "sections", "verbs"}
 
 SHOW_CHANGED = "the output to lamps, screens and sound desks (`modules.show`) changed"
 CASES: list[tuple[str, list[tuple[str, str, str]], list[str], Risk]] = [
+    (
+        "another name of the robot",
+        [("lumen.yaml", "name: NAO", "name: ANA")],
+        ["the robot's name changed: it takes effect at the next start"],
+        Risk.RESTART,
+    ),
     ("comments", [(TOUR, "# What the robot remembers.", "# Things.")], [], Risk.COSMETIC),
     (
         "a lamp",
@@ -244,6 +250,24 @@ def test_a_changed_text_is_whole_before_and_now_with_its_line() -> None:
     )
     assert (said["file"], said["line"]) == (TOUR, 1 + was.splitlines().index(long))
     assert change_data(change, replace(new, documents={}))["line"] is None
+
+
+HOUSE = "robots: {NAO: {model: nao, at: {x: 1, y: 0}}, ANA: {model: nao, at: {x: 0, y: 0}}}"
+
+
+@for_each(
+    "was, now, said",
+    [
+        ("x: 1", "x: 1.2", "`at` of robot `NAO` changed: it takes effect at the next start"),
+        ("x: 0", "x: -1", "robot `ANA` changed"),
+        (", ANA: {model: nao, at: {x: 0, y: 0}}", "", "robot `ANA` removed: it takes effect at the next start"),
+        ("ANA", "Elodie", "robot `Elodie` added: it takes effect at the next start"),
+    ],
+)
+def test_the_robots_of_a_house_are_named(was: str, now: str, said: str) -> None:
+    one = "robot: {name: NAO, model: nao}"
+    old, new = (edited(("lumen.yaml", one, robots)) for robots in (HOUSE, HOUSE.replace(was, now)))
+    assert said in [change.sentence for change in changes(old, new)]
 
 
 def test_what_can_not_change_live_stays_as_it_was() -> None:

@@ -3,6 +3,7 @@
 import queue
 import sys
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from io import TextIOWrapper
 
 from lumen.cli.typed_commands import TypedCommands
@@ -80,9 +81,10 @@ class TypedVisitorPart(Part):
         if isinstance(sys.stdin, TextIOWrapper):
             sys.stdin.reconfigure(errors="replace")
         typed = sys.stdin is not None and sys.stdin.isatty()
-        while sys.stdin and (line := sys.stdin.readline(MAX_LINE_CHARACTERS)):
-            typed = True
-            self._lines.put(line.strip())
-            self._wake()
+        with suppress(OSError):  # such as a terminal that was closed: nothing more can be typed
+            while sys.stdin and (line := sys.stdin.readline(MAX_LINE_CHARACTERS)):
+                typed = True
+                self._lines.put(line.strip())
+                self._wake()
         if typed:
             self._lines.put(None)

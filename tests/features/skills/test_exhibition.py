@@ -114,7 +114,7 @@ def test_the_presence_has_the_hash_of_each_skills_code(tmp_path: Path) -> None:
     root = project_in(tmp_path)
     with lumen.open(root, robot=Obedient()) as exhibition:
         part = exhibition.services[SkillsPart]
-        until(lambda: part.said)
+        until(lambda: "skills" in part.said)
         before = part.said["skills"]["spray"]
         edit(root, CODE, "litres", "liters")
         until(lambda: part.said["skills"]["spray"] != before)
@@ -145,7 +145,8 @@ def test_a_story_on_a_robot_that_performs_skills_prints_that_it_does_not(tmp_pat
 
 
 def test_a_robot_that_gets_another_name_at_the_next_start_still_runs_the_code(tmp_path: Path) -> None:
-    root = project_in(tmp_path, SHORT)
+    story = ("did: {spray: 3s}, context: {litres: 0.1}", "within: 5s")
+    root = project_in(tmp_path, {**SHORT, STORY: story})
     with lumen.open(root, robot=Obedient()) as exhibition:
         edit(root, "lumen.yaml", "name: NAO", "name: ANA")
         assert exhibition.reload().verdict == "applied"

@@ -132,7 +132,25 @@ def _settings(old: Project, new: Project) -> Iterator[Change]:
     yield from section_changes(old, new, lambda row: not (row.fixed or row.entries))
     for field in (f.name for f in fields(Project) if f.name not in (*RESTART_FIELDS, *_SELF, "languages")):
         before, after = getattr(old, field), getattr(new, field)
-        by_entry = isinstance(after, Mapping) and field != "robots"
-        if before != after and not by_entry:
+        if before != after and not isinstance(after, Mapping):
             risk = Risk.BEHAVIOR if field == "behavior" else Risk.COSMETIC
             yield Change("setting", field, f"`{field}` is now {code(after)}, not {code(before)}", risk, "lumen.yaml")
+    yield from _robots(old, new)
+
+
+def _robots(old: Project, new: Project) -> Iterator[Change]:
+    """Yield the changes of `robots:` that no other setting shows.
+
+    Another robot's entry is only named: its settings change when that robot reloads them.
+    """
+    own = old.robots.get(old.robot), new.robots.get(new.robot)
+    for name in ("at", "driver"):
+        if getattr(own[0], name, None) != getattr(own[1], name, None):
+            sentence = f"`{name}` of robot `{new.robot}` changed: {AT_NEXT_START}"
+            yield Change("fixed", name, sentence, Risk.RESTART, "lumen.yaml")
+    before, after = ({name: spec for name, spec in each.robots.items() if name != each.robot} for each in (old, new))
+    for found in entry_changes("robot", "robot", Risk.COSMETIC, "lumen.yaml", before, after):
+        if found.about in before and found.about in after:
+            yield found
+        else:
+            yield replace(found, sentence=f"{found.sentence}: {AT_NEXT_START}", risk=Risk.RESTART)
