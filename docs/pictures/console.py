@@ -192,7 +192,7 @@ def take_tour(stack: ExitStack, camera: Camera) -> None:
     tour.write_text(tour.read_text("utf-8").replace('stop: "#any_question"', 'stop: "#any_qestion"'), "utf-8")
     wait(lambda: (robot().get("files", {}).get("last") or {}).get("verdict") == "refused", "files that are refused")
     camera.look("robot/NAO/files")
-    camera.sees("did you mean `any_question`?")
+    camera.sees("did you mean `#any_question`?")
     camera.take("files")
     camera.look("robot/NAO/day", (1400, 1250), dark=True)
     camera.take("day")

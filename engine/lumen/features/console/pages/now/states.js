@@ -45,8 +45,9 @@ function Boxes({ states, now }) {
 /** @param {{ state: State, now: () => number }} props */
 function Box({ state, now }) {
   const leaf = !state.children?.length;
+  const name = state.name.slice(state.name.lastIndexOf(".") + 1); // the boxes around it show the rest of a path
   return html`<li class="state ${leaf ? "leaf" : ""}">
-    <p class="state-head"><span class="state-name">${state.name}</span><span class="since" title=${t("since")}>
+    <p class="state-head"><span class="state-name">${name}</span><span class="since" title=${t("since")}>
       <${Since} at=${state.since} now=${now} /></span></p>
     ${
       leaf

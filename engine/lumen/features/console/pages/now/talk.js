@@ -65,8 +65,9 @@ export function Lines({ robot }) {
   useEffect(() => {
     list.current?.scrollTo({ top: list.current.scrollHeight });
   }, [last]);
+  const above = () => list.current?.classList.toggle("more-above", list.current.scrollTop > 0);
   return html`<${Part} title=${t("talk")} kind="lines-of-talk">
-    <ol class="talk-lines" ref=${list} tabindex="0" aria-label=${t("talk")}>${lines.map(
+    <ol class="talk-lines" ref=${list} tabindex="0" aria-label=${t("talk")} onScroll=${above}>${lines.map(
       (line) => html`
       <li key=${line.key}><time datetime=${line.at}>${clock(line.at)}</time>
         ${" "}<b>${t(line.robot ? "talk.robot" : "talk.visitor")}</b> <span
