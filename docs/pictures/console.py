@@ -1,4 +1,4 @@
-"""Make the pictures of docs/console.md: a tour, a why, a fall, a refused reload, a day, a phone, and three robots.
+"""Make the pictures of docs/console.md: a tour, a why, a fall, a refused reload, a day, a phone, and other pages.
 
     python -m docs.pictures.console [wall]
 
@@ -103,14 +103,15 @@ class Camera:
         options.page_load_strategy = "none"  # each picture waits for its own text
         self.driver = webdriver.Chrome(options, Service(shutil.which("chromedriver")))
 
-    def look(self, path: str, size: tuple[int, int] = WIDE, *, dark: bool = False) -> None:
+    def look(self, path: str, size: tuple[int, int] = WIDE, *, dark: bool = False, shows: str = "Rest") -> None:
+        """Open a page, and wait until it is loaded and shows a text."""
         metrics = {"width": size[0], "height": size[1], "deviceScaleFactor": 1, "mobile": False}
         self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", metrics)
         scheme = [{"name": "prefers-color-scheme", "value": "dark" if dark else "light"}]
         self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": scheme})
         self.driver.get(PAGE + path)
         time.sleep(3)
-        wait(lambda: "Rest" in self.shown() and "Loading" not in self.shown(), "a loaded page")
+        wait(lambda: shows in self.shown() and "Loading" not in self.shown(), "a loaded page")
 
     def shown(self) -> str:
         """Return the text of the page."""
@@ -156,6 +157,8 @@ def main() -> None:
         if "wall" not in sys.argv[1:]:
             with ExitStack() as tour:
                 take_tour(tour, camera)
+            with ExitStack() as seen:
+                take_see(seen, camera)
         take_wall(stack, camera)
 
 
@@ -206,6 +209,20 @@ def take_tour(stack: ExitStack, camera: Camera) -> None:
     camera.look("")
     camera.sees("The robot fell.")
     camera.take("fall")
+
+
+def take_see(stack: ExitStack, camera: Camera) -> None:
+    """A simulated robot in its hall, and the words that it says."""
+    folder = project(stack)
+    stack.enter_context(running(folder, "run", "--robot", "simulation", "--speed", "1"))
+    stack.enter_context(running(folder, "console", "--port", str(PORT)))
+    until("ask_name")
+    camera.look("robot/NAO/see")
+    wait(lambda: bool(camera.driver.find_elements(By.CSS_SELECTOR, ".picture img:not(.unseen)")), "the camera's image")
+    camera.take("see")
+    hear("my name is Budi")
+    camera.look("robot/NAO/subtitles", shows="How are you, Budi?")
+    camera.take("subtitles")
 
 
 if __name__ == "__main__":
