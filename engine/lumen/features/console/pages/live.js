@@ -63,6 +63,28 @@ export async function get(path, values = {}, limit = QUESTION) {
     signal: AbortSignal.timeout(limit),
     cache: "no-store",
   });
+  return dataOf(answer);
+}
+
+/**
+ * Send JSON to one of the console's paths, and return the JSON of its answer; the error has what it says.
+ * @param {string} path
+ * @param {Record<string, any>} body
+ * @param {number} [limit]
+ * @returns {Promise<any>}
+ */
+export async function post(path, body, limit = JOB) {
+  const answer = await fetch(path, {
+    method: "POST",
+    headers: { "Content-Type": "application/json" },
+    body: JSON.stringify(body),
+    signal: AbortSignal.timeout(limit),
+  });
+  return dataOf(answer);
+}
+
+/** @param {Response} answer */
+async function dataOf(answer) {
   const data = await answer.json().catch(() => ({}));
   if (!answer.ok)
     throw Object.assign(new Error(data.reason ?? data.detail ?? `${answer.status}`), { status: answer.status });

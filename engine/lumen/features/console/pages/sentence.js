@@ -1,7 +1,7 @@
 // @ts-check
 // Edit this sentence: where something that the robot said is written, and a new wording of it in all languages.
 /** @import { Data, Entry, FoundSentence, Reworded, SentencePlace } from "./types" */
-import { JOB, get } from "./live.js";
+import { JOB, get, post } from "./live.js";
 import { InEnglish, Quote, reasonOf } from "./quoted.js";
 import { may } from "./session.js";
 import { Badge, Dialog, Select, html, languageName, place, t, typed, useEffect, useRef, useState } from "./ui.js";
@@ -24,17 +24,7 @@ const TYPED = /^says “([^]*)”, /; // the note of the console about a sentenc
  * @param {Data} body
  * @returns {Promise<Reworded>}
  */
-async function post(body) {
-  const answer = await fetch("/api/sentence", {
-    method: "POST",
-    headers: { "Content-Type": "application/json" },
-    body: JSON.stringify(body),
-    signal: AbortSignal.timeout(JOB),
-  });
-  const said = await answer.json().catch(() => ({}));
-  if (!answer.ok) throw new Error(said.reason ?? `${answer.status}`);
-  return said;
-}
+const reworded = (body) => post("/api/sentence", body);
 
 /**
  * The sentences of an entry of the journal, each with the id of its command; that of an operator has none.
@@ -94,7 +84,7 @@ function Wording({ name, at, saved }) {
     wait(true);
     complain("");
     try {
-      const checked = await post({ ...body, texts, write: check !== null });
+      const checked = await reworded({ ...body, texts, write: check !== null });
       if (checked.written) {
         saved({ ...checked, before: at.texts, body });
         return;
@@ -136,7 +126,7 @@ function Saved({ name, was, undone }) {
     complain("");
     const changed = was.changes.filter((one) => one.was).map((one) => [one.language, was.before[one.language]]);
     try {
-      undone(await post({ ...was.body, version: was.version, texts: Object.fromEntries(changed), write: true }));
+      undone(await reworded({ ...was.body, version: was.version, texts: Object.fromEntries(changed), write: true }));
     } catch (error) {
       complain(reasonOf(error));
     }

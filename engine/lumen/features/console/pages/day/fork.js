@@ -2,6 +2,7 @@
 // Fork from here: what would have been, with another event or with the saved files; beside what was.
 /** @import { Data, Entry, Forked } from "../types" */
 /** @import { Filled } from "./instead.js" */
+import { post } from "../live.js";
 import { Quote, reasonOf } from "../quoted.js";
 import { Badge, Part, clock, html, lineOf, t, ticked, useEffect, useRef, useState } from "../ui.js";
 import { Instead, blank, eventOf } from "./instead.js";
@@ -11,14 +12,8 @@ import { Instead, blank, eventOf } from "./instead.js";
  * @returns {Promise<Forked>}
  */
 async function ask(body) {
-  const answer = await fetch("/api/fork", {
-    method: "POST",
-    headers: { "Content-Type": "application/json" },
-    body: JSON.stringify(body),
-    signal: AbortSignal.timeout(60000),
-  });
-  const said = await answer.json().catch(() => ({}));
-  if (!answer.ok || said.reason) throw new Error(said.reason ?? `${answer.status}`);
+  const said = await post("/api/fork", body);
+  if (said.reason) throw new Error(said.reason);
   return said;
 }
 

@@ -1,6 +1,7 @@
 // @ts-check
 // What visitors said, and which row of `hears` took it; an author says which one should have, and it becomes a saying.
 /** @import { Heard } from "../types" */
+import { post } from "../live.js";
 import { Quote, reasonOf } from "../quoted.js";
 import { may } from "../session.js";
 import { Select, fixed, html, languageName, t, useEffect, useRef, useState, typed } from "../ui.js";
@@ -34,19 +35,9 @@ function Row({ name, one, rows, saved }) {
     wait(true);
     complain("");
     try {
-      const body = JSON.stringify({ robot: name, ...could[Number(chosen)], language: one.language, text });
-      const sent = await fetch("/api/sayings", {
-        method: "POST",
-        headers: { "Content-Type": "application/json" },
-        body,
-        signal: AbortSignal.timeout(60000),
-      });
-      const said = await sent.json().catch(() => ({}));
-      if (sent.ok) {
-        saved(said.file);
-        return;
-      }
-      complain(said.reason ?? `${sent.status}`);
+      const body = { robot: name, ...could[Number(chosen)], language: one.language, text };
+      saved((await post("/api/sayings", body)).file);
+      return;
     } catch (error) {
       complain(reasonOf(error));
     }

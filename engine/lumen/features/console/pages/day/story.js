@@ -1,27 +1,14 @@
 // @ts-check
 // Keep as a test: a visit becomes a story of the project, in which the visitor has another name.
-/** @import { Data, Stretch } from "../types" */
-import { JOB } from "../live.js";
+/** @import { Stretch } from "../types" */
+import { post } from "../live.js";
 import { Quote, reasonOf } from "../quoted.js";
 import { Dialog, html, t, useState, typed } from "../ui.js";
 
 /**
  * A visit that was kept: the file of the story, and a remark if it plays otherwise than it was.
  * @typedef {{ file: string, remark?: string }} Kept
- * @param {Data} body
- * @returns {Promise<Kept>}
  */
-async function keep(body) {
-  const answer = await fetch("/api/stories", {
-    method: "POST",
-    headers: { "Content-Type": "application/json" },
-    body: JSON.stringify(body),
-    signal: AbortSignal.timeout(JOB),
-  });
-  const said = await answer.json().catch(() => ({}));
-  if (!answer.ok) throw new Error(said.reason ?? `${answer.status}`);
-  return said;
-}
 
 /** @param {{ name: string, visit: Stretch, onClose: () => void, kept: (one: Kept) => void }} props */
 function KeepDialog({ name, visit, onClose, kept }) {
@@ -33,7 +20,8 @@ function KeepDialog({ name, visit, onClose, kept }) {
     complain("");
     wait(true);
     try {
-      kept(await keep({ robot: name, position: visit.from, visitor: visit.visitor ?? "", name: other }));
+      const visitor = visit.visitor ?? "";
+      kept(await post("/api/stories", { robot: name, position: visit.from, visitor, name: other }));
       onClose();
     } catch (error) {
       complain(reasonOf(error));

@@ -1,7 +1,7 @@
 // @ts-check
 // What visitors asked and nobody could answer; each becomes a passage of knowledge/, in the languages of the project.
 /** @import { Unanswered as Question } from "../types" */
-import { robotOf } from "../live.js";
+import { post, robotOf } from "../live.js";
 import { Quote, reasonOf } from "../quoted.js";
 import { may } from "../session.js";
 import { fixed, html, languageName, t, useEffect, useRef, useState, typed } from "../ui.js";
@@ -43,19 +43,9 @@ function Row({ name, one, saved }) {
     const { [one.language]: own, ...others } = texts;
     const also = Object.fromEntries(Object.entries(others).filter(([, pair]) => pair.question || pair.answer));
     try {
-      const body = JSON.stringify({ robot: name, ...own, language: one.language, also });
-      const sent = await fetch("/api/passages", {
-        method: "POST",
-        headers: { "Content-Type": "application/json" },
-        body,
-        signal: AbortSignal.timeout(LIMIT),
-      });
-      const said = await sent.json().catch(() => ({}));
-      if (sent.ok) {
-        saved(said.file);
-        return;
-      }
-      complain(said.reason ?? `${sent.status}`);
+      const body = { robot: name, ...own, language: one.language, also };
+      saved((await post("/api/passages", body, LIMIT)).file);
+      return;
     } catch (error) {
       complain(reasonOf(error));
     }

@@ -1,7 +1,7 @@
 // @ts-check
 // Many houses: their robots, the steps of a rollout, and what stops it.
 /** @import { Fleet, FleetRobot, House as Home, Rollout as Rolled } from "../types" */
-import { get } from "../live.js";
+import { get, post } from "../live.js";
 import { Quote, inPageLanguage, reasonOf } from "../quoted.js";
 import { may } from "../session.js";
 import { Ask, Badge, Part, fixed, html, span, t, useEffect, useState } from "../ui.js";
@@ -11,16 +11,6 @@ const PERIOD = 2000; // [ms] how often the centre is asked
 const LEVELS = { proved: "open", away: "warn", unknown: "warn", refused: "bad", "rolled back": "bad", edited: "warn" };
 /** @type {Record<string, string>} */
 const VERDICTS = { going: "open", finished: "open", aborted: "bad", paused: "warn", "a person decides": "warn" };
-
-/** @param {string} decision */
-async function decide(decision) {
-  const answer = await fetch("/api/fleet", {
-    method: "POST",
-    headers: { "Content-Type": "application/json" },
-    body: JSON.stringify({ decision }),
-  });
-  if (!answer.ok) throw new Error((await answer.json()).reason);
-}
 
 /** @param {{ rollout: Rolled }} props */
 function Steps({ rollout }) {
@@ -97,7 +87,8 @@ export default function FleetPage() {
     const timer = setInterval(look, PERIOD);
     return () => clearInterval(timer);
   }, []);
-  const act = (/** @type {string} */ decision) => decide(decision).then(look, (error) => fail(reasonOf(error)));
+  const act = (/** @type {string} */ decision) =>
+    post("/api/fleet", { decision }).then(look, (error) => fail(reasonOf(error)));
   const here = (fleet?.robots ?? []).filter((one) => one.here).length;
   const trouble = failed || fleet?.trouble || fleet?.centre?.overruled;
   return html`<h1>${t("page.fleet")}</h1>

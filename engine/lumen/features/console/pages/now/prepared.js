@@ -2,7 +2,7 @@
 // Sentences that operators keep for the robot to say: of the project, so each browser has them.
 /** @import { Prepared as Kept, Robot } from "../types" */
 import { command } from "../commands.js";
-import { get } from "../live.js";
+import { get, post } from "../live.js";
 import { Quote, reasonOf } from "../quoted.js";
 import { html, languageName, t, useEffect, useState } from "../ui.js";
 
@@ -14,15 +14,7 @@ const LIMIT = 15000; // [ms]
  * @param {boolean} keep
  */
 async function change(sentence, keep) {
-  const answer = await fetch("/api/prepared", {
-    method: "POST",
-    headers: { "Content-Type": "application/json" },
-    body: JSON.stringify({ ...sentence, keep }),
-    signal: AbortSignal.timeout(LIMIT),
-  });
-  const said = await answer.json().catch(() => ({}));
-  if (!answer.ok) throw new Error(said.reason ?? `${answer.status}`);
-  return said.prepared;
+  return (await post("/api/prepared", { ...sentence, keep }, LIMIT)).prepared;
 }
 
 /** What is kept: `all`, `keep(sentence)`, `remove(sentence)`, and why the last of these failed. */
