@@ -72,7 +72,7 @@ class JsonSchema:
 
     @cached_property
     def _quick(self) -> "jsonschema_rs.Validator | None":
-        """The validator of jsonschema-rs; None if that rejects the schema."""
+        """The validator of jsonschema-rs; None if the schema is nested too deeply or jsonschema-rs rejects it."""
         from jsonschema_rs import Draft202012Validator, RegexOptions
 
         if deeper_than(MAX_DATA_DEPTH, self.schema):

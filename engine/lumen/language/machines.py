@@ -16,7 +16,7 @@ from lumen.language.properties import Property
 
 
 class StateKind(StrEnum):
-    """`type:` of a state; a state with children is compound, one without is atomic."""
+    """The `type:` of a state; without it a state with children is compound, any other atomic."""
 
     ATOMIC = "atomic"
     COMPOUND = "compound"

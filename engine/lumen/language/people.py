@@ -11,9 +11,9 @@ _CLUSTER = re.compile(r"\s+|.", re.DOTALL)
 
 
 def name_key(name: str) -> str:
-    """Return the name in the form for comparisons: in NFKC, case folded, without invisible characters, single spaces.
+    """Return a name in the form used for comparisons: NFKC, case folded, no invisible characters, single spaces.
 
-    The Turkish letters i are equal: `IŞIK` and `ipek` from another keyboard mean `Işık` and `İpek`.
+    All forms of the Turkish letter i are equal: `IŞIK` and `ipek` from another keyboard mean `Işık` and `İpek`.
     """
     return " ".join(_folded(name).split())
 

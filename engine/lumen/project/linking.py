@@ -66,7 +66,7 @@ class _Linker:
         return self.linked[name]
 
     def invoked(self, name: str, invoke: Invoke) -> MachineDefinition | None:
-        """Return the invoked machine; if it can't be invoked, report why and return None."""
+        """Return the invoked machine, or None if it can't be invoked; report why unless its own file has errors."""
         report, where, wanted = self.reports[name], (*invoke.where, "behavior"), invoke.behavior
         if wanted in self.way:
             way = " → ".join(f"`{n}`" for n in (*self.way[self.way.index(wanted) :], wanted))

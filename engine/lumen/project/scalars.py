@@ -53,7 +53,10 @@ def _corners(place: Place) -> Iterator[tuple[int, int]]:
 
 
 def _units(text: str, begin: int, end: int) -> Iterator[Unit]:
-    """Yield the characters between two offsets of the text, with escapes decoded, blanks included."""
+    """Yield the characters of the value between two offsets, with escapes decoded and blanks included.
+
+    Anchors, tags, the header of a block and the quotes are skipped.
+    """
     found = _PROPERTIES.match(text, begin, end)
     begin = found.end() if found else begin
     if header := _HEADER.match(text, begin, end):

@@ -68,7 +68,7 @@ class _Variables:
             self.report(DUPLICATE_VARIABLE, ("outputs", name), message, hint="rename one of them", key=True)
 
     def named_in(self, name: str) -> tuple[str, ...]:
-        """Return the variables that a formula in the terms of this one may use.
+        """Return the variables that a formula in a term of the variable `name` may use.
 
         With a weighted defuzzifier, these are the inputs and the outputs before it; otherwise none.
         """

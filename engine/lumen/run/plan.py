@@ -52,7 +52,7 @@ class Plan:
 
     @property
     def shared(self) -> bool:
-        """Whether other processes are on the bus."""
+        """Whether other processes can connect to the bus."""
         return bool(self.roles) or not within_process(self.url)
 
     @property

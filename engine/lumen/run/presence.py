@@ -62,7 +62,7 @@ def host_of(module: str) -> str:
 
 @dataclass
 class Peer:
-    """Another process."""
+    """Another process, as its signs of life describe it."""
 
     session: str
     """The id of the process, new at each start."""

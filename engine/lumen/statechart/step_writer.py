@@ -50,7 +50,7 @@ class StepWriter(ActionText):
         return self.written(partial(self.take, enabled))
 
     def elapsed(self, event: str) -> WrittenStep | None:
-        """Return the function for the end of the timer of an `after`; None if no branch of it can be written."""
+        """Return the function that handles the end of an `after` timer; None if none of its branches can be written."""
         self.sendid = "event[0]"
         self.line("timers = without_ended(timers, event)")
         return self.heard(self.start.timed(event))

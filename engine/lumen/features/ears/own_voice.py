@@ -37,7 +37,7 @@ class OwnVoice:
                 self._end(id, at)
 
     def report(self, body: Any, at: float) -> None:
-        """Read the state of a command that came over the bus."""
+        """Record that another program's `say` began or ended, from the state of its command received at `at` [s]."""
         match body:
             case {"method": str(method), "id": str(id), "state": str(state)} if method.lower() == "say":
                 if state in _SPOKEN:

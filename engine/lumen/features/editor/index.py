@@ -201,7 +201,7 @@ class _Reader:
                 yield from self.alias(path, value)
 
     def keyed(self, kind: NameKind, path: NodePath) -> Iterator[NameUse]:
-        """Yield the uses of names in a key with names of that kind."""
+        """Yield the uses of names in the key at `path`, which is a name of the kind `kind`."""
         key = str(path[-1])
         if kind is NameKind.ROW:
             yield from self.row(path)
@@ -331,7 +331,7 @@ def _state_at(path: NodePath) -> str:
 
 
 def _outline(file: str, document: Document) -> BehaviorOutline | None:
-    """Return the states of a behaviour's file, which may have errors; None if they can't be determined."""
+    """Return the states of a behaviour's file, which may have errors; None if it is unusable or another file."""
     if kind_of(file) != "behavior":
         return None
     try:

@@ -27,7 +27,7 @@ def check(draft: ProjectDraft) -> None:
 
 
 def _place(motion: MotionDefinition, short: Shortage) -> NodePath:
-    """Return the place in the file of the key nearest to that time, a key of that joint if it has any."""
+    """Return the path of the key nearest in time to the shortage: one of its joint if there is any, else any key."""
     keys = [key for track in motion.tracks.values() for key in track if key.where]
     own = [key for key in motion.tracks.get(short.joint, ()) if key.where]
     nearest = min(own or keys, key=lambda key: abs(key.time - short.time))

@@ -35,7 +35,7 @@ STUCK_TIME = 3.0
 class Drive:
     """Turns the wheels within the base's limits of speed and acceleration; without a call of `steer` it brakes.
 
-    The argument `limit` has the maximum speeds ahead [m/s] and around [rad/s]; hot motors halve them.
+    The argument `limit` has the maximum forward speed [m/s] and turning speed [rad/s]; hot motors halve both.
     """
 
     def __init__(self, world: World, geometry: DriveGeometry, limit: Velocity, hot: Callable[[], bool]) -> None:
@@ -45,7 +45,7 @@ class Drive:
 
     @property
     def limit(self) -> Velocity:
-        """The maximum speeds straight ahead [m/s] and around [rad/s]: halved while motors are hot."""
+        """The maximum forward speed [m/s] and turning speed [rad/s]; both are halved while motors are hot."""
         part = 0.5 if self._hot() else 1.0
         return Velocity(part * self._limit.x, 0.0, part * self._limit.theta)
 
@@ -55,7 +55,7 @@ class Drive:
         return self.speed == 0.0 and self.turning == 0.0
 
     def steer(self, speed: float, turning: float) -> None:
-        """Request this speed ahead [m/s] and around to the left [rad/s] for the next control period."""
+        """Request a forward speed [m/s] and a turning speed to the left [rad/s] for the next control period."""
         self._wanted = speed, turning
 
     def turn_wheels(self) -> None:

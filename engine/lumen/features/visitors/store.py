@@ -158,8 +158,9 @@ class Store:
             self._connection = None
 
     def _clean(self) -> None:
-        """Remove deleted data from SQLite's write-ahead log. Raises ModuleError if another program has the file
-        open.
+        """Remove deleted data from SQLite's write-ahead log.
+
+        Raises ModuleError if another program has the file open.
         """
         busy = self._do(lambda db: db.execute("PRAGMA wal_checkpoint(TRUNCATE)").fetchone()[0])
         if busy:

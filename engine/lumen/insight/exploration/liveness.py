@@ -138,7 +138,10 @@ class Liveness:
         return always_caught(self._machine, transition.hears) if transition.hears else frozenset()
 
     def _domain(self, transition: Transition) -> str:
-        """Return the path of the state within which everything is left and entered (SCXML's `getTransitionDomain`)."""
+        """Return the path of the innermost state that contains all states left and entered; empty for the machine.
+
+        This is `getTransitionDomain` of SCXML.
+        """
         source = self._machine.states[transition.source]
         inside = source.kind is StateKind.COMPOUND and all(_within(t, source.path) for t in transition.targets)
         if inside and not transition.reenter:

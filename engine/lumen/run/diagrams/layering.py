@@ -140,7 +140,10 @@ def _narrow(ranks: Mapping[N, int], sizes: Mapping[N, Extent], widest: float) ->
 def _with_ways(
     ranks: Mapping[N, int], room: dict[N, Extent], edges: Sequence[Edge[N]]
 ) -> tuple[list[list[object]], dict[tuple[object, object], list[object]], dict[object, Extent]]:
-    """Return the layers, with a narrow node for each edge that passes one; each edge as its nodes; and all sizes."""
+    """Return the layers, the chain of nodes along each edge, and the sizes of all nodes.
+
+    An edge has a narrow node of its own in each layer that it crosses. Edges from a node to itself are left out.
+    """
     layers: list[list[object]] = [[] for _ in range(max(ranks.values(), default=-1) + 1)]
     for n, rank in ranks.items():
         layers[rank].append(n)

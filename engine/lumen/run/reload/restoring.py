@@ -93,7 +93,7 @@ def _new_folder(kept: Path) -> Path:
 
 
 def _replace(root: Path, wanted: Mapping[str, bytes | None], there: Mapping[str, bytes]) -> None:
-    """Write the files to the folder; if one fails, restore all. Raises OSError.
+    """Write the files to the folder, and delete those that are None; if one fails, restore all. Raises OSError.
 
     Each is first written under another name, so that a full disk is noticed before anything is replaced.
     """

@@ -31,9 +31,9 @@ class KeptBundles:
         self._read: dict[str, Project | None] = {}
 
     def project(self, hash: str, behavior: str) -> Project | None:
-        """Return the project of a hash with that behaviour.
+        """Return the project of a hash, set to that behaviour.
 
-        Return None if it was not stored, or this version can't read it.
+        Return None if the bundle was not stored, lacks that behaviour, or can't be read by this version.
         """
         if hash not in self._read:
             self._read[hash] = self.load(hash)

@@ -112,7 +112,7 @@ class TakenAgain(NamedTuple):
 
 
 class ReplayCount:
-    """A counter of replayed steps by their visits; `report` is the result."""
+    """Counts replayed steps, and the visits and differences among them; `report` is the result."""
 
     def __init__(self) -> None:
         self.report = ReplayReport()

@@ -54,7 +54,7 @@ def _under_way(found: Sequence[ChosenVisit], at: str) -> ChosenVisit:
 
 
 def _distance(one: ChosenVisit, wanted: time, length: timedelta) -> timedelta:
-    """Return the distance of a time of day from a visit; zero if the visit was under way."""
+    """Return the gap between a visit and the `length` of time from `wanted` on; zero if they overlap."""
     days = {one.began.date(), one.ended.date()}
     moments = [datetime.combine(day, wanted, one.began.tzinfo) for day in days]
     return min(max(one.began - (moment + length), moment - one.ended, timedelta()) for moment in moments)

@@ -101,7 +101,7 @@ def results(visit: RecordedVisit) -> dict[str, Mapping[str, Any]]:
 
 
 def _verb(begun: tuple[str, str, Mapping[str, Any]]) -> str:
-    """Return the verb of a command in the journal; for built-in verbs its class name in lower case."""
+    """Return the verb of a command in the journal: an added verb, or a built-in command's class in lower case."""
     _, kind, said = begun
     return str(said.get("skill")) if kind == "Do" else kind.lower()
 

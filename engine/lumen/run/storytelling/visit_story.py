@@ -151,7 +151,7 @@ def _approved(project: Project, visit: RecordedVisit) -> tuple[StoryStep, ...]:
 
 
 def _alike(was: Sequence[str], now: Sequence[str]) -> int:
-    """Return the number of recorded actions that are repeated, in order from the beginning."""
+    """Return how many of the recorded actions `was` are repeated by `now` before the first difference."""
     return next((i for i, row in enumerate(was) if i >= len(now) or now[i] != row), len(was))
 
 

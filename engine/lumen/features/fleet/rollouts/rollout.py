@@ -130,7 +130,10 @@ def _overruled(state: CentreState, heard: HeardRobots) -> CentreState:
 
 
 def _released(state: CentreState, heard: HeardRobots) -> CentreState:
-    """Return the state without exposed robots that have reported another bundle, or whose bundle is proved."""
+    """Return the state without the exposed robots that no longer count as running an unproved bundle.
+
+    Either the bundle is proved by now, or the robot has reported another one since the bundle was withdrawn.
+    """
 
     def back(robot: str, bundle: str, version: int) -> bool:
         said = heard[robot].presence if robot in heard else None

@@ -74,7 +74,7 @@ class ControllerDraft:
         return self.terms[self._named[id(spec)]]
 
     def fresh(self, name: str, taken: Collection[str], place: Place) -> str:
-        """Return a similar name that Lumen's rules can use and that is not taken."""
+        """Return a similar name that Lumen's rules can use and that is not in `taken`; report it if it differs."""
         stem = _UNFIT.sub("_", normalize("NFC", name)).strip("-") or "unnamed"
         stem = f"{stem}_" if stem.lower() in KEYWORDS else stem
         ours = unused_name(stem, taken.__contains__, len(taken))
