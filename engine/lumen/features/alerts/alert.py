@@ -61,8 +61,9 @@ class Origin(NamedTuple):
 
 
 def one_line(text: str) -> str:
-    """Return the first 500 characters of the text on one line, without those that control a terminal or a mail's
-    header.
+    """Return the first 500 characters of the text on one line.
+
+    Characters that control a terminal or a mail's header are left out.
     """
     return " ".join("".join(sign if sign.isprintable() else " " for sign in text).split())[:500]
 

@@ -32,8 +32,9 @@ class Ration:
         self._held[key] = alert.after(earlier) if earlier else alert
 
     def due(self, now: float, *, quiet: bool) -> Iterator[Alert]:
-        """Yield the alerts that may be sent at `now` [s, monotonic], in their order, and count them as sent; none if
-        `quiet`.
+        """Yield the alerts that may be sent at `now` [s, monotonic], in their order, and count them as sent.
+
+        If `quiet`, there are none.
         """
         if quiet:
             return
@@ -105,8 +106,9 @@ class Courier:
                 self._changed.notify_all()
 
     def end(self, until: float) -> None:
-        """Deliver the waiting alerts until that time [s, monotonic], or drop them in quiet hours, then end; return at
-        once.
+        """Deliver the waiting alerts until that time [s, monotonic], or drop them in quiet hours; then end.
+
+        This method returns at once.
         """
         with self._changed:
             self._ending, self._until = True, until

@@ -12,8 +12,9 @@ from lumen.features.alerts.settings import AlertChannel, Alerts, Mail, Program, 
 
 
 def deliver(channel: AlertChannel, alert: Alert, origin: Origin, root: Path) -> None:
-    """Deliver an alert, waiting for the network, or for a program, which runs in `root`. Raises UndeliveredError if it
-    did not arrive.
+    """Deliver an alert, waiting for the network, or for a program, which runs in `root`.
+
+    Raises UndeliveredError if it did not arrive.
     """
     match channel:
         case Webhook(url):

@@ -317,8 +317,9 @@ def told_of(event: Event) -> tuple[str, str, str] | None:
 
 
 def told_of_own(event: Event, modules: Collection[str]) -> tuple[str, str, str] | None:
-    """Return the alert about the loss or the return of one of the project's own modules, in the form of `told_of`; None
-    for other events.
+    """Return the alert about the loss or return of one of the project's own modules; None for other events.
+
+    It has the form of `told_of`.
     """
     module, _, what = event.name.partition(".")
     if module not in modules:

@@ -53,8 +53,9 @@ def send_mail(mail: Mail, line: str, body: dict[str, Any]) -> None:
 
 
 def _connected(mail: Mail) -> smtplib.SMTP:
-    """Return the connected server, encrypted and logged in as configured. Raises the errors of smtplib, and ValueError
-    if the password would be sent unencrypted.
+    """Return the connected server, encrypted and logged in as configured.
+
+    Raises the errors of smtplib, and ValueError if the password would be sent unencrypted.
     """
     name = os.environ.get(USER, "")
     if name and mail.security == "none":
@@ -167,8 +168,9 @@ def post(url: str, body: dict[str, Any]) -> None:
 
 
 def _of_variable(name: str) -> str:
-    """Return the URL in an environment variable. Raises UndeliveredError without quoting it, since it may be a
-    secret.
+    """Return the URL in an environment variable.
+
+    Raises UndeliveredError without quoting it, since it may be a secret.
     """
     url = os.environ.get(name, "").strip()
     if not url:

@@ -151,8 +151,9 @@ class Answers(Module):
     def _known(
         self, embeddings: Embeddings, id: str, asked: Mapping[str, Any], passages: list[str], deadline: float
     ) -> list[str] | None:
-        """Return the passages nearest in meaning to the question; None if one of them is the answer, which is
-        published.
+        """Return the passages nearest in meaning to the question.
+
+        Return None if one of them is the answer, which is published.
 
         If the embeddings are unavailable, that is reported, and the passages nearest by words are used.
         """
@@ -195,8 +196,9 @@ class Answers(Module):
             self._raise(id, chat.calls, offers)
 
     def _say(self, id: str, sentence: str, asked: Mapping[str, Any], passages: list[str]) -> None:
-        """Publish a sentence. Raises ModuleError if it may not be said; then the rest of the answer is not said
-        either.
+        """Publish a sentence.
+
+        Raises ModuleError if it may not be said; then the rest of the answer is not said either.
         """
         if reason := refusal(sentence, asked["language"], passages, (self.project.robot,)):
             raise ModuleError(f"a sentence from the language model was not spoken: {reason}")

@@ -38,8 +38,9 @@ class Chat:
         return [Call(name, self._arguments.get(at, "")) for at, name in sorted(self._names.items())]
 
     def read(self, kind: str, pieces: Iterable[bytes]) -> Iterator[Piece]:
-        """Yield the text piece by piece; `kind` is the answer's media type. Raises ModuleError if it is not a chat
-        completion.
+        """Yield the text piece by piece; `kind` is the answer's media type.
+
+        Raises ModuleError if it is not a chat completion.
         """
         if kind == "text/event-stream":
             for data in _events(pieces):

@@ -85,8 +85,9 @@ class Embeddings:
     def find(
         self, project: Project, question: str, language: str, deadline: float, wanted: Callable[[], bool], most: int
     ) -> MeantPassages:
-        """Return the passages for a question by `deadline` (`time.monotonic`), with the answers of the `most` nearest
-        ones.
+        """Return the passages for a question by `deadline` (`time.monotonic`).
+
+        The result includes the answers of the `most` nearest ones.
 
         Raises ModuleError if no vectors are available.
         """
@@ -125,8 +126,9 @@ class Embeddings:
         return bool(missing)
 
     def _embed(self, texts: Iterable[KnownText]) -> list[TextVector]:
-        """Return the vectors of these texts; those that are not kept are requested in batches. Raises ModuleError if
-        they are late or of different lengths.
+        """Return the vectors of these texts; those that are not kept are requested in batches.
+
+        Raises ModuleError if they are late or of different lengths.
         """
         texts = list(texts)
         missing = [text for text in dict.fromkeys(texts) if text not in self._kept]

@@ -101,8 +101,9 @@ class _BoundedReader(io.RawIOBase):
         return True
 
     def readinto(self, buffer: Any) -> int:
-        """Read into the buffer. Raises TimeoutError at the deadline, ModuleError for too much data or an unwanted
-        answer.
+        """Read into the buffer.
+
+        Raises TimeoutError at the deadline, ModuleError for too much data or an unwanted answer.
         """
         while self._wanted():
             left = self._deadline - time.monotonic()

@@ -14,8 +14,9 @@ Embed = Callable[[Sequence[KnownText]], list[TextVector]]
 
 
 def by_meaning(embed: Embed) -> "Method":
-    """Return a method with three features: the similarity of the nearest wording, the average of the nearest three, and
-    the similarity of the answer.
+    """Return a method with three features of the similarity of meaning.
+
+    They are the similarity of the nearest wording, the average of the nearest three, and the similarity of the answer.
     """
     from lumen.retrieval.features import by_wordings, joined
 

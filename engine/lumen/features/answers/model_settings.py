@@ -23,8 +23,9 @@ class ServerSettings(NamedTuple):
         return cls(said["url"], said["name"], said.get("key", ""))
 
     def secret(self) -> str:
-        """Return the key from the environment, empty if the settings name no variable for it. Raises ModuleError if it
-        is not set, or is not printable ASCII.
+        """Return the key from the environment, empty if the settings name no variable for it.
+
+        Raises ModuleError if it is not set, or is not printable ASCII.
         """
         if not self.key:
             return ""

@@ -24,8 +24,9 @@ class ServerVectors:
         self.batch = BATCH
 
     def vectors(self, texts: Sequence[KnownText], deadline: float, wanted: Callable[[], bool]) -> list[TextVector]:
-        """Return the vectors of these texts. Raises ModuleError if the server can't be reached or its answer is
-        invalid.
+        """Return the vectors of these texts.
+
+        Raises ModuleError if the server can't be reached or its answer is invalid.
         """
         body = {"model": self.settings.name, "input": [text for text, _ in texts]}
         with answered(self.settings.url, body, self.settings.secret(), deadline, wanted, MAX_BYTES) as (_, pieces):

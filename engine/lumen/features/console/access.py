@@ -42,8 +42,9 @@ class TooFastError(Exception):
 
 
 class Access:
-    """Identifies people by the PINs of the roles; without any PIN everyone is an author, which is allowed on loopback
-    only.
+    """Identifies people by the PINs of the roles.
+
+    Without any PIN everyone is an author, which is allowed on loopback only.
 
     Sessions are signed with a `secret`, so that they outlive the console's process; those that were ended are not
     accepted.
@@ -56,8 +57,9 @@ class Access:
         self._ended: OrderedDict[str, float] = OrderedDict()
 
     def person(self, address: str, bearer: str, cookie: str) -> Person:
-        """Return the person who sends a request: by the PIN in `bearer`, else by the session in `cookie`; if that is
-        wrong or missing, the role is `NOBODY`.
+        """Return the person who sends a request: by the PIN in `bearer`, else by the session in `cookie`.
+
+        If that is wrong or missing, the role is `NOBODY`.
 
         Raises TooFastError if PINs are tried too fast.
         """
@@ -68,8 +70,9 @@ class Access:
         return self._signed(cookie)
 
     def role(self, address: str, pin: str) -> Role:
-        """Return the role of a PIN, `NOBODY` for a wrong one. Raises TooFastError, without checking the PIN, if it
-        comes too soon.
+        """Return the role of a PIN, `NOBODY` for a wrong one.
+
+        Raises TooFastError, without checking the PIN, if it comes too soon.
         """
         self._guard.check(address)
         given, found = pin.encode("utf-8", "surrogatepass"), Role.NOBODY
@@ -105,8 +108,9 @@ class Access:
 
 
 class PinGuard:
-    """Limits attempts at PINs: a pause for each address that grows with its wrong PINs, and a limit for all
-    addresses.
+    """Limits attempts at PINs.
+
+    There is a pause for each address, which grows with the wrong PINs from it, and a limit for all addresses.
     """
 
     def __init__(self) -> None:
@@ -155,8 +159,9 @@ def pins_from(said: Mapping[str, str], environment: Mapping[str, str]) -> dict[R
 
 
 def secret_in(root: Path) -> bytes:
-    """Return the key that signs sessions, from the home of the project; a new one is stored there if there is none. It
-    is empty if it cannot be stored.
+    """Return the key that signs sessions, from the home of the project; a new one is stored there if there is none.
+
+    It is empty if it cannot be stored.
     """
     home = Home(home_of(root))
     try:

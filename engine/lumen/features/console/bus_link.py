@@ -21,8 +21,9 @@ _log = logging.getLogger(__name__)
 
 
 class BusLink:
-    """Holds a bus open from `start` to `close`: `reached` is the bus, or None; `trouble` is the reason while it accepts
-    no messages.
+    """Holds a bus open from `start` to `close`.
+
+    `reached` is the bus, or None; `trouble` is the reason while it accepts no messages.
 
     On each bus it subscribes to `patterns`. `heard` receives their messages, `answered` those on the key for
     answers, `returned` the keys of messages that no process receives; all on threads of the bus. `changed` is called

@@ -34,8 +34,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Serve the console until a signal ends it, and return 0. It survives the end of an exhibition, and connects to the
-    next one.
+    """Serve the console until a signal ends it, and return 0.
+
+    It survives the end of an exhibition, and connects to the next one.
     """
     demand("console", "`lumen console`", "starlette", "uvicorn")
     give_back()

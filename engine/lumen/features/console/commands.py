@@ -67,8 +67,9 @@ class Commands:
         self._tasks = set[asyncio.Task[None]]()
 
     def send(self, id: str, robot: str, command: str, fields: Fields, person: Person) -> PageCommand:
-        """Send a command to a robot, or with `ALL` to all, and return it; a known id returns its command without
-        sending.
+        """Send a command to a robot, or with `ALL` to all, and return it.
+
+        If the id is known, its command is returned and nothing is sent.
 
         Raises UsageError if the command is malformed.
         """
@@ -161,8 +162,9 @@ class Commands:
         )
 
     def _note(self, robot: str, text: str, by: str) -> None:
-        """Write a note with the sender's name into the journal, for a command that does not pass through the
-        behaviour.
+        """Write a note with the sender's name into the journal.
+
+        This is for a command that does not pass through the behaviour.
         """
         if bus := self._watch.link.bus:
             with suppress(BusError):

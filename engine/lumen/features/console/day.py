@@ -155,8 +155,9 @@ COUNTED = ("asked", "missed", "answers", "languages")
 
 
 def day_of(entries: Iterable[RecordedEntry], machines: MachineSource, wanted: date | None) -> Day:
-    """Return the day `wanted` from the entries of a journal, by the exhibition's clock; None means the last day with
-    visits, or the last with entries if there are no visits.
+    """Return the day `wanted` from the entries of a journal, by the exhibition's clock.
+
+    None means the last day with visits, or the last with entries if there are no visits.
     """
     clock, watch, replayer = JournalClock(), VisitWatch(), Replayer(machines)
     days: dict[date, Day] = {}

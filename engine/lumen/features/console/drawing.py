@@ -47,8 +47,9 @@ class Drawing:
         }
 
     def pose(self, body: Any) -> dict[str, list[float]] | None:
-        """Return each link's position x, y, z [m] and quaternion w, x, y, z in the hall, by name; None if `body` has no
-        valid joint angles.
+        """Return each link's position x, y, z [m] and quaternion w, x, y, z in the hall, by name.
+
+        Return None if `body` has no valid joint angles.
         """
         if not isinstance(body, Mapping):
             return None

@@ -35,8 +35,9 @@ WRITING = ("POST", "PUT", "PATCH", "DELETE")
 
 
 class Gate:
-    """Refuses requests from other sites' pages, under unknown host names, or with unsuitable bodies; adds headers to
-    answers.
+    """Refuses requests from other sites' pages, under unknown host names, or with unsuitable bodies.
+
+    It also adds headers to answers.
 
     `hosts` are names and addresses under which the console is reached, besides the address of the connection itself.
     The clients' addresses that `proxies` report are trusted.

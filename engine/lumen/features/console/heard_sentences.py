@@ -38,8 +38,10 @@ class HeardSentence(NamedTuple):
 
 
 def heard_sentence(behavior: str, taken: ReplayedStep, text: str) -> tuple[HeardSentence, dict[str, list[str]]] | None:
-    """Return a sentence as it was heard, and the keys of the rows of each of its states. The result is None if no
-    active state has rows, the behaviour is unknown, or nothing is left of the sentence without names.
+    """Return a sentence as it was heard, and the keys of the rows of each of its states.
+
+    The result is None if no active state has rows, the behaviour is unknown, or nothing is left of the sentence without
+    names.
 
     Names that the behaviours' context held before or afterwards are removed from it. Guards see the context of that
     moment.

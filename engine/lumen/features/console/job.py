@@ -31,8 +31,9 @@ REPLAY_TIME = 10.0
 
 
 def day(pipe: AnswerPipe, root: Path, robot: str, wanted: str, form: str, whose: str) -> Iterator[bytes]:
-    """Answer with a day, for a page or as `csv`: from this machine's files, or, if `whose` is `told`, from pages in the
-    pipe. An empty `wanted` means the last day. The answer is NOTHING if this machine has no files.
+    """Answer with a day, for a page or as `csv`: from this machine's files, or from the pipe if `whose` is `told`.
+
+    An empty `wanted` means the last day. The answer is NOTHING if this machine has no files.
     """
     from lumen.features.console.day import day_csv
     from lumen.features.console.kept_days import KeptDays

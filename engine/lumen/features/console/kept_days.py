@@ -65,8 +65,9 @@ class KeptDays:
         return self._still_open(day_of((entry for page in pages for entry in _recorded(page)), self._machine, wanted))
 
     def _still_open(self, found: Day) -> Day:
-        """Return the day without the questions that a passage answers by now, and without the sentences that are now
-        sayings.
+        """Return the day without the questions and sentences that have been dealt with.
+
+        These are questions that a passage answers by now, and sentences that are now sayings.
         """
         if found.unanswered:
             known = knowledge_parts(read_files(self._root, self._robot)).knowledge.values()

@@ -267,8 +267,9 @@ class Past:
         return self._watch.keys.is_ours(view.robot)
 
     def home(self, view: KnownRobot) -> str:
-        """Return the name by which jobs find the robot's files; empty if the project has a single robot, or the robot
-        is not of this project.
+        """Return the name by which jobs find the robot's files.
+
+        It is empty if the project has a single robot, or the robot is not of this project.
         """
         return self._watch.keys.home(view.robot) if self.is_ours(view) else ""
 
@@ -284,8 +285,9 @@ class Past:
 
 
 def _positions(request: Request) -> tuple[int, int]:
-    """Return the positions of the first and the last entry that are requested. Raises DeniedError if one is not a whole
-    number.
+    """Return the positions of the first and the last entry that are requested.
+
+    Raises DeniedError if one is not a whole number.
     """
     first, last = (request.query_params.get(name, "") for name in ("from", "to"))
     if not (first.isdigit() and last.isdigit() and len(first + last) < 36):

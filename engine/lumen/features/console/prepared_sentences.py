@@ -40,8 +40,9 @@ class PreparedSentences:
         self.routes = [Route("/api/prepared", self._listed), Route("/api/prepared", self._changed, methods=["POST"])]
 
     def all(self) -> list[PreparedSentence]:
-        """Return the kept sentences in their order; none if the file is missing. Raises UsageError if it is broken or
-        can't be read.
+        """Return the kept sentences in their order; none if the file is missing.
+
+        Raises UsageError if it is broken or can't be read.
         """
         try:
             if self._file.stat().st_size > MAX_BYTES:
@@ -71,8 +72,9 @@ class PreparedSentences:
         return self._write([*before, one])
 
     def remove(self, sentence: PreparedSentence) -> list[PreparedSentence]:
-        """Remove a sentence if it is kept, and return the others. Raises UsageError if the file can't be read or
-        written.
+        """Remove a sentence if it is kept, and return the others.
+
+        Raises UsageError if the file can't be read or written.
         """
         return self._write([one for one in self.all() if one != sentence])
 

@@ -31,8 +31,9 @@ class TrustedProxies:
             raise UsageError(f"`proxies` of the console: {error}; write an address such as 127.0.0.1") from None
 
     def seen(self, scope: AsgiScope) -> AsgiScope:
-        """Return the request with the `client` and the `scheme` that a trusted proxy reports; unchanged if it came from
-        elsewhere.
+        """Return the request with the `client` and the `scheme` that a trusted proxy reports.
+
+        A request that came from elsewhere is returned unchanged.
         """
         client = scope.get("client")
         if not client or not self._trusts(_address(client[0])):

@@ -112,8 +112,9 @@ def _checked(before: Mapping[str, str], wanted: Mapping[str, str]) -> dict[str, 
 
 
 def reworded(one: WrittenSentence, content: bytes, texts: Mapping[str, str]) -> bytes:
-    """Return the file with the new texts of a sentence, by language. Raises UsageError if the way the file is written
-    does not allow it.
+    """Return the file with the new texts of a sentence, by language.
+
+    Raises UsageError if the way the file is written does not allow it.
     """
     text, document = FileText(one.file, content), one.report.document
     expected, edits = copy.deepcopy(document.data), list[Edit]()

@@ -118,8 +118,9 @@ class Ears(Module):
         self._look_for_phrases()
 
     def idle(self) -> float | None:
-        """Publish whether the ears listen if it has changed; return the time until the next change [s], None if
-        the next change is unknown.
+        """Publish whether the ears listen if it has changed; return the time until the next change [s].
+
+        Return None if the next change is unknown.
         """
         now = self.clock()
         because, until = self._addressing.state(now)

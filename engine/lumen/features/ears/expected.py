@@ -34,8 +34,9 @@ class HeardName(NamedTuple):
     name: str
 
     def phrases(self) -> list[str]:
-        """Return its phrases in all languages; for an entry's field those of all entries, since any may be the current
-        one.
+        """Return its phrases in all languages.
+
+        For an entry's field these are the phrases of all entries, since any may be the current one.
         """
         machine, name = self
         tables: list[Any] = [machine.phrases.get(name), *(row.phrases for row in machine.answers.get(name, ()))]

@@ -12,8 +12,9 @@ class Recogniser(Protocol):
     languages: tuple[str, ...]
 
     def expect(self, sentences: Sequence[Sequence[str]]) -> None:
-        """Set the sentences, as words, that are likely to be said; others may be too. It may be called from any
-        thread.
+        """Set the sentences, as words, that are likely to be said; others may be too.
+
+        It may be called from any thread.
         """
         ...
 

@@ -45,8 +45,9 @@ class Whisper(RankingRecogniser):
         """Do nothing: Whisper uses no expected sentences."""
 
     def hypotheses(self, sound: Sound) -> Sequence[Hypothesis]:
-        """Return the text of a sound as a single hypothesis, none if nothing is said. Raises ModuleError if Whisper
-        fails on it.
+        """Return the text of a sound as a single hypothesis, none if nothing is said.
+
+        Raises ModuleError if Whisper fails on it.
         """
         import numpy as np
 

@@ -47,8 +47,9 @@ class VideoSource:
         self.period = 1.0 / rate if 1.0 <= rate <= 240.0 else 1.0 / 30.0
 
     def read(self) -> Frame | None:
-        """Return the next frame, without a time on the robot's clock; None at the end. Raises ModuleError if its size
-        is out of range.
+        """Return the next frame, without a time on the robot's clock; None at the end.
+
+        Raises ModuleError if its size is out of range.
         """
         there, pixels = self._capture.read()
         if not there:
@@ -128,8 +129,9 @@ class Eyes(Module):
         return heard if self._source else {str(self.settings.options.get("images", IMAGE)): self._image, **heard}
 
     def idle(self) -> float | None:
-        """Examine the next frame of the module's own source, and delete expired faces; return the time until the next
-        call [s].
+        """Examine the next frame of the module's own source, and delete expired faces.
+
+        Return the time until the next call [s].
         """
         if self._clock() - self._expired > 3_600.0:
             self._expired = self._clock()
@@ -147,8 +149,9 @@ class Eyes(Module):
             self._window.close()
 
     def look(self, frame: Frame, now: float) -> None:
-        """Publish the nearest face and the largest person in a frame taken at `now` [s]. Raises ModuleError if OpenCV
-        fails.
+        """Publish the nearest face and the largest person in a frame taken at `now` [s].
+
+        Raises ModuleError if OpenCV fails.
         """
         try:
             faces = self._detector.faces(frame.grey)

@@ -45,8 +45,9 @@ class FaceGallery:
         return sorted({name for name, _, _ in self._faces})
 
     def enrol(self, name: str, grey: "Grey", face: Box) -> int:
-        """Store this face under a name; return the number of its pictures. Raises ModuleError if the gallery is full or
-        the file can't be written.
+        """Store this face under a name; return the number of its pictures.
+
+        Raises ModuleError if the gallery is full or the file can't be written.
         """
         key = name_key(name)
         mine = [i for i, (other, _, _) in enumerate(self._faces) if name_key(other) == key]

@@ -45,8 +45,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Write or print the graph, and return 0. Raises UsageError if there is no such behaviour or state, or if the graph
-    can't be drawn or written as requested.
+    """Write or print the graph, and return 0.
+
+    Raises UsageError if there is no such behaviour or state, or if the graph can't be drawn or written as requested.
     """
     project = lumen.load(shown_project(options.project))
     name = options.behavior or project.behavior

@@ -14,8 +14,9 @@ HEARD_TEXT = "event.data.result"
 
 
 def in_asked_order(transitions: Sequence[Transition]) -> Sequence[Transition]:
-    """Return the transitions in the order of their evaluation: rows of `hears` after `on`, and before a transition on
-    any event (`*`).
+    """Return the transitions in the order of their evaluation.
+
+    Rows of `hears` come after `on`, and before a transition on any event (`*`).
     """
     if not any(t.hears for t in transitions):
         return transitions

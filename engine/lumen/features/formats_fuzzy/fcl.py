@@ -81,8 +81,9 @@ class FclSection(NamedTuple):
 
 
 def read_fcl(file: str, content: bytes, title: str) -> tuple[dict[str, Any], list[Diagnostic]]:
-    """Return the data of a controller file, and findings. Raises ForeignFileError if there is no function block, or if
-    no output or rule is left.
+    """Return the data of a controller file, and findings.
+
+    Raises ForeignFileError if there is no function block, or if no output or rule is left.
     """
     findings = ConversionFindings()
     text = text_of(file, content, findings)
@@ -97,8 +98,9 @@ def read_fcl(file: str, content: bytes, title: str) -> tuple[dict[str, Any], lis
 
 
 def _without_comments(text: str) -> str:
-    """Return the text with comments replaced by blanks, so that offsets stay the same; an unclosed one extends to the
-    end.
+    """Return the text with comments replaced by blanks, so that offsets stay the same.
+
+    An unclosed comment extends to the end.
     """
     parts, at = [], 0
     while match := _COMMENT.search(text, at):
@@ -199,8 +201,9 @@ class _FclReader:
         return self.draft.result()
 
     def declare(self, section: FclSection) -> None:
-        """Read declarations such as `a, b : REAL;`, and their range: `REAL (0 .. 9)`, or `RANGE := (0 .. 9);` after
-        them.
+        """Read declarations such as `a, b : REAL;`, and their range.
+
+        The range is written in the type, `REAL (0 .. 9)`, or after the declaration, `RANGE := (0 .. 9);`.
         """
         names: list[str] = []
         for statement in section.statements:
@@ -353,8 +356,9 @@ class _FclReader:
         spec.update(operators({"aggregation": said or None}, {"aggregation": usual}))
 
     def term(self, variable: str, spec: dict[str, Any], name: str, said: str, statement: FclStatement) -> list[float]:
-        """Add a term; return the x of its points, or of both ends of its shape, from which the variable's range
-        follows.
+        """Add a term; return the x of its points, or of both ends of its shape.
+
+        The variable's range follows from these.
         """
         points = [float(number) for point in _POINT.findall(said) for number in point]
         if points and not _POINT.sub("", said).strip():
@@ -389,8 +393,9 @@ class _FclReader:
         return []
 
     def single(self, variable: str, spec: dict[str, Any], name: str, x: float, statement: FclStatement) -> list[float]:
-        """Add a term with a single value: a constant if the defuzzifier is weighted, else a set without width; return
-        `[x]`.
+        """Add a term with a single value; return `[x]`.
+
+        It is a constant if the defuzzifier is weighted, else a set without width.
         """
         if spec.get("defuzzifier", "centroid") == "centroid" and spec is self.draft.sides["outputs"].get(
             self.draft.names[variable]

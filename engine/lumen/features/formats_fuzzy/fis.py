@@ -123,8 +123,9 @@ class FisVariable(NamedTuple):
 
 
 def read_fis(file: str, content: bytes, title: str) -> tuple[dict[str, Any], list[Diagnostic]]:
-    """Return the data of a controller file, and findings. Raises ForeignFileError if it is not a system, or if no
-    output or rule is left.
+    """Return the data of a controller file, and findings.
+
+    Raises ForeignFileError if it is not a system, or if no output or rule is left.
     """
     findings = ConversionFindings()
     text = text_of(file, content, findings)
@@ -321,8 +322,9 @@ class _FisReader:
         return rule
 
     def propositions(self, side: str, numbers: list[float], line: FisLine) -> list[str] | None:
-        """Return `variable is [not] term` for each number that is not 0; None, and a finding, if a number has no
-        term.
+        """Return `variable is [not] term` for each number that is not 0.
+
+        If a number has no term, this is reported and the result is None.
         """
         found = []
         for variable, number in zip(self.order[side], numbers, strict=True):
@@ -345,8 +347,9 @@ class _FisReader:
         return found
 
     def derived(self, variable: FisVariable, term: str, power: float, line: FisLine, *, negated: bool) -> str:
-        """Add a term for a set's complement or a power of its membership, which Lumen's rules lack; return its name, or
-        an empty text if the term is not a set.
+        """Add a term for a set's complement or a power of its membership, which Lumen's rules lack; return its name.
+
+        The name is empty if the term is not a set.
 
         In a conclusion, a hedge in Lumen's rules changes the degree of the rule; in Octave it changes the set.
         """

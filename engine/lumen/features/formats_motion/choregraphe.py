@@ -91,8 +91,9 @@ class Flags(NamedTuple):
 
 
 def read_choregraphe(file: MotionFile, findings: ConversionFindings) -> JointCurves:
-    """Return the curves of the timeline `file.timeline`, or of the only one if that name is empty. Raises
-    ForeignFileError if there is no such timeline, or no behaviour in the file.
+    """Return the curves of the timeline `file.timeline`, or of the only one if that name is empty.
+
+    Raises ForeignFileError if there is no such timeline, or no behaviour in the file.
 
     `file.hands` are the robot's hands besides NAO's: their keys are openings.
     """
@@ -180,8 +181,9 @@ def _way(root: XmlElement, wanted: XmlElement) -> list[XmlElement]:
 
 
 def _flags(timeline: XmlElement, findings: ConversionFindings) -> Flags:
-    """Return the frames of a timeline that are played, by default all from frame 1 on, and its pace; report invalid
-    flags.
+    """Return the frames of a timeline that are played, and the timeline's pace; report invalid flags.
+
+    By default all frames from frame 1 on are played.
     """
     found = {}
     for flag, none in (("start_frame", 1.0), ("end_frame", -1.0)):

@@ -27,8 +27,9 @@ _OLD = (
 
 
 def read_naoqi(file: MotionFile, findings: ConversionFindings) -> JointCurves:
-    """Return the curves that the file, or its function `file.timeline`, passes to ALMotion. Raises ForeignFileError if
-    there are none.
+    """Return the curves that the file, or its function `file.timeline`, passes to ALMotion.
+
+    Raises ForeignFileError if there are none.
     """
     tree = _tree(file.name, decoded(file.name, file.content))
     for rounds in (MAX_ROUNDS, 0):

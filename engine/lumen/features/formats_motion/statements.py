@@ -158,8 +158,9 @@ def _moves(body: list[ast.stmt]) -> bool:
 
 
 def lists_of(body: list[ast.stmt]) -> NamedLists | None:
-    """Return the lists of a motion that statements fill: those of Choregraphe's export, or three that are returned;
-    without such lists, None.
+    """Return the lists of a motion that statements fill; without such lists, None.
+
+    They are those of Choregraphe's export, or three lists that are returned.
     """
     nodes = list(_inner(body))
     if set(USUAL_LISTS) <= {n.id for n in nodes if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Store)}:

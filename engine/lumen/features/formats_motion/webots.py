@@ -42,8 +42,9 @@ POSE = "play"
 
 
 def read_soccer(file: str, text: str, findings: ConversionFindings) -> JointCurves:
-    """Return the curves of a motion, linear between its poses. Raises ForeignFileError if it has no joint, or one
-    twice.
+    """Return the curves of a motion, linear between its poses.
+
+    Raises ForeignFileError if it has no joint, or one twice.
     """
     (first, *rest), *lines = cells_of(file, text, "%")
     behind = first[0].partition(SOCCER_VERSION)[2].lstrip(", ")
@@ -125,8 +126,9 @@ def read_webots(file: MotionFile, findings: ConversionFindings) -> JointCurves:
 
 
 def _joints(file: str, lines: list[list[Cell]]) -> list[Cell]:
-    """Remove the joints from the front of the lines and return them; some tools write their names into the second
-    line.
+    """Remove the joints from the front of the lines and return them.
+
+    Some tools write the joints' names into the second line.
     """
     head = lines.pop(0) if lines else []
     if not head or head[0][0] != FIRST_CELL:
@@ -150,8 +152,9 @@ def _joints(file: str, lines: list[list[Cell]]) -> list[Cell]:
 
 
 def _time(text: str) -> float | None:
-    """Return the time of a pose [s] as Webots reads it: minutes and seconds may be missing, milliseconds have up to
-    nine digits; None for any other text.
+    """Return the time of a pose [s] as Webots reads it; None for any other text.
+
+    Minutes and seconds may be missing, and milliseconds have up to nine digits.
     """
     match = _TIME.fullmatch(text)
     return int(match[1] or 0) * 60.0 + int(match[2] or 0) + int(match[3]) / 1000.0 if match else None

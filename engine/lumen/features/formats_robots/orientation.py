@@ -56,8 +56,9 @@ def turn(axis: Vector, angle: float) -> Quaternion:
 
 
 def euler(angles: Vector, sequence: str = "xyz") -> Quaternion:
-    """Return three rotations [rad] about the axes of `sequence`: lower-case letters mean rotated axes, upper-case ones
-    fixed axes.
+    """Return three rotations [rad] about the axes of `sequence`.
+
+    Lower-case letters mean rotated axes, upper-case ones fixed axes.
     """
     q = UPRIGHT
     for letter, angle in zip(sequence, angles, strict=False):

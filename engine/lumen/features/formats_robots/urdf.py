@@ -93,8 +93,9 @@ class _UrdfReader:
         return RobotModel(self.root.get("name"), self.file, self.root.place, found, self.links)
 
     def known(self, joint: XmlElement) -> bool:
-        """Return whether a joint connects two links of the file, and gives the child its only parent; report it
-        otherwise.
+        """Return whether a joint connects two links of the file, and gives the child its only parent.
+
+        If not, report it.
         """
         name, ends = joint.get("name"), []
         for end in ("parent", "child"):
@@ -161,8 +162,9 @@ class _UrdfReader:
         )  # fmt: skip
 
     def limits(self, limit: XmlElement | None) -> tuple[float | None, float | None, float | None, float | None]:
-        """Return lowest and highest angle, speed and torque; None for those that are missing or, except angles, not
-        positive.
+        """Return the lowest and highest angle, the speed and the torque.
+
+        Each is None if it is missing or, except for angles, not positive.
         """
         if limit is None:
             return None, None, None, None

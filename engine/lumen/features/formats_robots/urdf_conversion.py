@@ -118,8 +118,10 @@ def _found(filename: str, folder: Path) -> tuple[Path | None, str]:
 
 
 def _candidates(inner: str, folder: Path) -> Iterator[Path]:
-    """Yield possible paths of a mesh: as written, without its package, and beside the URDF, from the folders above as
-    well.
+    """Yield possible paths of a mesh, from the URDF's folder and up to four folders above it.
+
+    Each path is tried as written, and without its first one or two folders. Last come the bare file name in `meshes/`
+    and beside the URDF.
     """
     here = folder.resolve()
     parts = [part for part in Path(inner).parts if part != ".."]

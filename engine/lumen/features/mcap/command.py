@@ -66,8 +66,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Record, repair a file or set a mark; return the exit code, 0 on success. Raises UsageError if an option is
-    invalid or the file can't be written.
+    """Record, repair a file or set a mark; return the exit code, 0 on success.
+
+    Raises UsageError if an option is invalid or the file can't be written.
     """
     if options.recover:
         return _recover(options)
@@ -149,8 +150,9 @@ def _wait(bus: Bus, tape: FileTape, span: float | None) -> None:
 
 
 def _running_project(root: Path, reached: Reached) -> Project:
-    """Return the running project if its files are kept, else the one in the folder. Raises UsageError if it has
-    errors.
+    """Return the running project if its files are kept, else the one in the folder.
+
+    Raises UsageError if it has errors.
     """
     kept: dict[str, bytes] | None = None
     with suppress(BusError, TypeError, KeyError):

@@ -14,8 +14,9 @@ from lumen.run.forgetting.files import attempt, await_others
 
 
 def forget_recordings(folder: Path, name: str, found: Forgetting) -> None:
-    """Remove a person from all recordings in a project's state folder and those noted there, and add the result to
-    `found`.
+    """Remove a person from all recordings in a project's state folder and those noted there.
+
+    The result is added to `found`.
 
     A recording that another process is writing is left to that process, and reported if the name stays.
     """

@@ -132,8 +132,9 @@ class RecordingPart(Part):
             return None
 
     def _kept(self, began: float, ended: float, pieces: Sequence[Path]) -> Iterable[Recorded]:
-        """Return what a recording of these pieces needs to be understood: the files, the journal and the robot's
-        shape.
+        """Return the files, the journal and the robot's shape.
+
+        A recording of these pieces can't be understood without them.
         """
         look = self._view.look(began) if self._view else ()
         return [*self._explaining(pieces), *journal_files(self._root, began, ended, self._robot), *look]

@@ -111,8 +111,9 @@ class Recorder:
         self._news.append(project)
 
     def mark(self, why: str) -> None:
-        """Mark this moment on all tapes, for the reason `why`, so that they keep what happened around it. Any thread
-        may call it.
+        """Mark this moment on all tapes, for the reason `why`, so that they keep what happened around it.
+
+        Any thread may call it.
         """
         for tape in self.tapes:
             tape.mark(why, time.time())
@@ -204,8 +205,9 @@ class Recorder:
 
 
 def _patterns(project: Project, camera: bool) -> Sequence[str]:
-    """Return the patterns to subscribe to: everything; without the camera all known keys but the images', so that none
-    are rendered.
+    """Return the patterns to subscribe to: everything, if the camera is recorded.
+
+    Otherwise they are all known keys except that of images, so that no images are rendered.
     """
     if camera:
         return ("#",)

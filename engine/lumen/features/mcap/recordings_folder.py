@@ -71,8 +71,9 @@ class RecordingsFolder:
                 _remove(folder)
 
     def prune(self, now: float, keep: float, size: float) -> None:
-        """Delete recordings older than `keep` days, and the oldest beyond `size` MB in total, but never the newest for
-        its size.
+        """Delete recordings older than `keep` days, and the oldest beyond `size` MB in total.
+
+        The newest is never deleted for its size.
         """
         left = 0
         begun = {each.path.absolute() for each in self.begun() if each.written}

@@ -23,21 +23,23 @@ SOUND_FORMS = ("lumen.recording", "lumen.wav.stream")
 
 
 class Redaction(NamedTuple):
-    """The number of `messages` and attached `files` that name a person, and of `pictures` and sounds that may contain
-    them.
-    """
+    """The numbers of items in a recording that name a person or may show one."""
 
     messages: int = 0
+    """The number of messages that name the person."""
     files: int = 0
+    """The number of attached files that name the person."""
     pictures: int = 0
+    """The number of pictures and sounds that may contain the person."""
 
     def __bool__(self) -> bool:
         return any(self)
 
 
 def redacted(path: Path, person: PersonName) -> tuple[Redaction, Changed]:
-    """Return what in a recording is about a person, and the function that removes it. Raises RecordingError if it is
-    not a recording.
+    """Return what in a recording is about a person, and the function that removes it.
+
+    Raises RecordingError if it is not a recording.
     """
     times, messages, files = list[int](), 0, 0
     for item in read_recording(path):

@@ -20,8 +20,9 @@ FRAMES, LOOK = ".frames", ".look"
 
 
 class RobotView:
-    """Converts a robot's joints to frames; without the extra `simulation` there are none, and `tell` receives the
-    reason.
+    """Converts a robot's joints to frames.
+
+    Without the extra `simulation` there are none, and `tell` receives the reason.
     """
 
     def __init__(self, project: Project, tell: Callable[[str], None] = lambda text: None) -> None:
@@ -51,8 +52,9 @@ class RobotView:
         )
 
     def look(self, at: float) -> Iterator[RecordedMessage]:
-        """Yield the message with the shapes of all links, valid from the time `at` [s since 1970]; nothing without
-        links.
+        """Yield the message with the shapes of all links, valid from the time `at` [s since 1970].
+
+        Without links, nothing is yielded.
         """
         if self._links is None:
             return

@@ -17,8 +17,9 @@ _log = logging.getLogger(__name__)
 
 
 class FileTape:
-    """Writes one recording; `first` are its first items, `last` returns the last ones from the beginning [s since
-    1970].
+    """Writes one recording.
+
+    `first` are its first items, and `last` returns the last ones from the beginning [s since 1970].
 
     After an error of the disk, which is reported once, the file stays as far as it was written. Raises OSError or
     LumenError if it can't be created.

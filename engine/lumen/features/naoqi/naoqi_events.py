@@ -111,8 +111,9 @@ class NaoqiEvents:
 
 
 class HealthAlerts:
-    """Returns the events `battery.low` and `motors.hot` once, and again only after the battery or the motor has
-    recovered.
+    """Returns the events `battery.low` and `motors.hot` once.
+
+    Each is returned again only after the battery or the motor has recovered.
     """
 
     def __init__(self) -> None:

@@ -143,8 +143,9 @@ class Consumer(BrokerConnection):
             raise BusRefusedError(f"the broker at {self.address} {what}: {subscription.refusal}")
 
     def handled(self, delivery: Delivery) -> None:
-        """Acknowledge a delivery and all before it, so that the broker sends more; if they may be lost, only in
-        batches.
+        """Acknowledge a delivery and all before it, so that the broker sends more.
+
+        If they may be lost, they are acknowledged only in batches.
         """
         enough = 1 if delivery.subscription.must_arrive else PREFETCH // 2
         if delivery.epoch == self._epoch and delivery.number - self._acknowledged >= enough:

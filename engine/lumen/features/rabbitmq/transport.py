@@ -38,8 +38,10 @@ class Transport:
 
     @property
     def drops(self) -> tuple[DropLog, ...]:
-        """The logs of dropped messages: above the rate, failed by a fault of Lumen, unusable, with a repeated id, too
-        old or too many to wait, or impossible to send.
+        """The logs of dropped messages, by the reason for the loss.
+
+        The reasons are: above the rate, failed by a fault of Lumen, unusable, with a repeated id, too old or too many
+        to wait, or impossible to send.
         """
         sent = self.publisher.outbox.drops, self.publisher.unsendable
         heard = self.dispatcher.guard.drops, self.dispatcher.unusable.drops, self.dispatcher.repeated

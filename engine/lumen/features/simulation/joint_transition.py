@@ -17,8 +17,9 @@ def duration(speed: float) -> float:
 
 
 class JointTransition:
-    """Moves all joints of `targets` [rad] together along a smoothstep, in `seconds`, or longer if a joint needs more
-    time.
+    """Moves all joints of `targets` [rad] together along a smoothstep.
+
+    It lasts `seconds`, or longer if a joint needs more time.
 
     `after` is called once at the end, but not after `cancel`. A cancelled transition comes to a halt within 0.4 s.
     """

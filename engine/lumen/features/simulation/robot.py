@@ -297,8 +297,9 @@ class SimulatedRobot(ExecutingRobot):
         self.figure.place(visitor)
 
     def face(self) -> tuple[float, float] | None:
-        """Return the pixel of the visitor's face in the image; None without visitor or camera, or if it is outside the
-        image.
+        """Return the pixel of the visitor's face in the image.
+
+        Return None without a visitor or a camera, or if the face is outside the image.
         """
         face = self.figure.face()
         return self._camera.pixel(face) if face and self._camera else None

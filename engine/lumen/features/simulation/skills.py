@@ -144,7 +144,9 @@ class SimulatedSkills:
                 assert_never(command)
 
     def fall(self, now: float) -> None:
-        """Go limp; unless the robot falls on its back, raise the head and put the arms in the way, until `lie` releases
+        """Go limp.
+
+        Unless the robot falls on its back, the head is raised and the arms are put in the way, until `lie` releases
         them.
 
         Legs would be too slow to help.

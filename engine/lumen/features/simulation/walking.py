@@ -103,8 +103,9 @@ class WalkController:
         self._walking: WalkActivity | None = None
 
     def begin(self, command: Walk | Move, now: float) -> "WalkActivity":
-        """Begin a walk and return its activity. If a walk at a velocity is in progress, a new velocity changes that
-        walk.
+        """Begin a walk and return its activity.
+
+        If a walk at a velocity is in progress, a new velocity changes that walk.
 
         Raises RobotError, and changes nothing, if the walk must not begin.
         """

@@ -110,8 +110,9 @@ class PretendedSkillsPart(Part):
 
 
 def skills(services: Services) -> Part | None:
-    """Make the part: a story and a recording robot run no code of skills without REAL_SKILLS. It is None if no code
-    runs and the project has no skills.
+    """Make the part: a story and a recording robot run no code of skills without REAL_SKILLS.
+
+    It is None if no code runs and the project has no skills.
     """
     plan = services.plan
     hall = services.setup.hall

@@ -87,8 +87,9 @@ def _list(options: argparse.Namespace, store: Store, file: Path) -> int:
 
 
 def _forget(options: argparse.Namespace, root: Path, folder: Path) -> int:
-    """Return 0 if a visitor was forgotten and nothing within reach is left, else 1. Raises UsageError without a
-    name.
+    """Return 0 if a visitor was forgotten and nothing within reach is left, else 1.
+
+    Raises UsageError without a name.
     """
     if not name_key(options.name or ""):
         raise UsageError("name the visitor: `lumen memory forget NAME`")

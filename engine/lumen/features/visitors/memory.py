@@ -132,8 +132,9 @@ class Memory(Module):
         self._visit.live(self._clock(), self._earlier, spoken=spoken)
 
     def _earlier(self) -> JournalEnd:
-        """Return the end of an earlier run's journal; an empty one if the database is unreadable, which the next write
-        reports.
+        """Return the end of an earlier run's journal.
+
+        It is empty if the database is unreadable, which the next write reports.
         """
         try:
             return self._store.end()
@@ -225,8 +226,9 @@ class Memory(Module):
         self._answer(message, lambda: {"entries": self._store.journal(since=since, visitor=visitor, limit=limit)})
 
     def _answer(self, message: Message, work: Callable[[], Mapping[str, Any]]) -> None:
-        """Write all earlier entries, do the work, and reply with the result; errors are also reported to the
-        operator.
+        """Write all earlier entries, do the work, and reply with the result.
+
+        Errors are also reported to the operator.
         """
         try:
             self._write()

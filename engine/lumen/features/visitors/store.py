@@ -111,8 +111,9 @@ class Store:
         return [_visitor(row) for row in self._do(lambda db: db.execute(sql, (MAX_ROWS,)).fetchall())]
 
     def journal(self, *, since: float = 0.0, visitor: str = "", limit: int = 100) -> list[dict[str, Any]]:
-        """Return the newest entries since a time [s since 1970], in the order of time: at most `limit`, and at most
-        `MAX_ROWS`.
+        """Return the newest entries since a time [s since 1970], in the order of time.
+
+        There are at most `limit` of them, and at most `MAX_ROWS`.
 
         With a `visitor`, only entries of their visits are returned.
         """
@@ -140,8 +141,9 @@ class Store:
         return found
 
     def expire(self, before: float) -> int:
-        """Delete entries older than that time [s since 1970], and visitors not seen since; return the number of
-        rows.
+        """Delete entries older than that time [s since 1970], and visitors not seen since.
+
+        Return the number of deleted rows.
         """
         sql = (("DELETE FROM journal WHERE time < ?"), ("DELETE FROM visitors WHERE last < ?"))
         gone = int(self._do(lambda db: sum(db.execute(one, (before,)).rowcount for one in sql)))

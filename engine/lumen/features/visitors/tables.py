@@ -31,8 +31,9 @@ _NOW = {"journal": _FIRST["journal"] | {"key", "visit"}, "visitors": _FIRST["vis
 
 
 def check(db: sqlite3.Connection) -> None:
-    """Raise sqlite3.OperationalError if tables of these names belong to another program or a newer Lumen; write
-    nothing.
+    """Raise sqlite3.OperationalError if tables of these names belong to another program or a newer Lumen.
+
+    Nothing is written.
     """
     if (written := db.execute("PRAGMA user_version").fetchone()[0]) > VERSION:
         raise sqlite3.OperationalError(f"{NEWER_TABLES} {written}")

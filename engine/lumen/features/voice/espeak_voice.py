@@ -34,8 +34,9 @@ _Callback = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.POINTER(ctypes.c_short), ctype
 
 
 class Espeak:
-    """The library, of which a process has one, returned by `espeak()`. Any thread may use it. Raises ModuleError if it
-    or its data can't be loaded.
+    """The library, of which a process has one, returned by `espeak()`.
+
+    Any thread may use it. Raises ModuleError if it or its data can't be loaded.
     """
 
     def __init__(self, library: str, data: str | None) -> None:
@@ -66,8 +67,9 @@ class Espeak:
     def timed(
         self, text: str, language: str = "en", pace: int = WORDS_PER_MINUTE
     ) -> tuple[Sound, tuple[WordTime, ...]]:
-        """Return the sound, and the times at which words begin if the voice reports them. Raises ModuleError as `speak`
-        does.
+        """Return the sound, and the times at which words begin if the voice reports them.
+
+        Raises ModuleError as `speak` does.
         """
         said = "".join(sign if sign.isprintable() else " " for sign in text[:MAX_TEXT_CHARACTERS])
         data = said.encode("utf-8", "replace") + b"\0"

@@ -23,8 +23,9 @@ _UNDEFINED = Identifier("undefined")
 
 
 def equality(translation: Translation, node: Binary) -> ExpressionNode:
-    """Return a comparison by `==`, `!=`, `===` or `!==` in Lumen's language. Raises ScriptError if it has no
-    counterpart.
+    """Return a comparison by `==`, `!=`, `===` or `!==` in Lumen's language.
+
+    Raises ScriptError if it has no counterpart.
     """
     positive, strict = node.sign in ("==", "==="), len(node.sign) == 3
     found = _undefined(translation, node, strict) or _index(translation, node) or _equal(translation, node, strict)
@@ -32,8 +33,10 @@ def equality(translation: Translation, node: Binary) -> ExpressionNode:
 
 
 def _undefined(translation: Translation, node: Binary, strict: bool) -> ExpressionNode | None:
-    """Translate `typeof x === 'undefined'`, `x === undefined` and `x == null`, tests that a value is missing; else
-    None.
+    """Translate a test that a value is missing; return None for any other comparison.
+
+    Such tests are `typeof x === 'undefined'`, `x === undefined` and `x == null`. Raises ScriptError if `typeof` is
+    compared with another text.
     """
     for one, other in ((node.left, node.right), (node.right, node.left)):
         kind_asked = isinstance(one, Unary) and one.sign == "typeof"

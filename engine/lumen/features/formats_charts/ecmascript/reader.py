@@ -60,8 +60,9 @@ def read_value(source: str, names: ScriptNames) -> ExpressionNode:
 
 
 def printed(tree: ExpressionNode) -> str:
-    """Return the text of one of Lumen's trees. Raises ScriptError if it is longer or deeper than an expression may
-    be.
+    """Return the text of one of Lumen's trees.
+
+    Raises ScriptError if it is longer or deeper than an expression may be.
     """
     if any(level > MAX_TREE_DEPTH for _, level in walk(tree)):
         raise ScriptError("it is nested too deeply")

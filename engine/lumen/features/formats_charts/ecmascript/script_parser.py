@@ -28,8 +28,9 @@ class ScriptError(Exception):
 
 
 def tokenize_script(source: str) -> list[Token]:
-    """Return the tokens of an expression, of the kinds number, text, name and sign, and a final `end`. Raises
-    ScriptError if it is too long or can't be read.
+    """Return the tokens of an expression, of the kinds number, text, name and sign, and a final `end`.
+
+    Raises ScriptError if it is too long or can't be read.
     """
     if len(source) > MAX_EXPRESSION_LENGTH:
         raise ScriptError(f"it is longer than {MAX_EXPRESSION_LENGTH:,} characters")

@@ -50,8 +50,9 @@ class Vocabulary(NamedTuple):
 
 
 def write_expression(source: str, vocabulary: Vocabulary) -> WrittenScript:
-    """Return one of Lumen's expressions in ECMAScript. Raises ScriptError if it uses the context or the event as a
-    whole.
+    """Return one of Lumen's expressions in ECMAScript.
+
+    Raises ScriptError if it uses the context or the event as a whole.
     """
     writer = _ScriptWriter(vocabulary)
     text = unparse(writer.node(parse_expression(as_written(source))))

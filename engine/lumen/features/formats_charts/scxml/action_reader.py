@@ -22,8 +22,9 @@ _STATEMENT = re.compile(
 
 
 def assignments(source: str) -> list[tuple[str, str]] | None:
-    """Return the names and values of `x = 1; y += x; z++`, in order; None if the script contains quotes or does
-    anything else.
+    """Return the names and values of `x = 1; y += x; z++`, in order.
+
+    Return None if the script contains quotes or does anything else.
     """
     text = re.sub(r"//[^\n]*|/\*.*?\*/", "", source, flags=re.DOTALL)
     if "'" in text or '"' in text:
@@ -209,8 +210,9 @@ class ScxmlActionReader:
         return element.get(name)
 
     def data(self, element: XmlElement) -> Any:
-        """Return the data of a `<send>` or `<donedata>`: names, parameters, or content; None without any. Raises
-        LeftOutError or ScriptError if it can't be converted.
+        """Return the data of a `<send>` or `<donedata>`: names, parameters, or content; None without any.
+
+        Raises LeftOutError or ScriptError if it can't be converted.
         """
         found: dict[str, Any] = {}
         for name in element.get("namelist").split():

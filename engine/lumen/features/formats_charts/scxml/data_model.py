@@ -125,8 +125,9 @@ class ScxmlDataModel:
 
 
 def written(text: str) -> Any:
-    """Return the value of inline content (SCXML B.2.8.1): JSON, a list or text in ECMAScript's form, or else the text;
-    None if it is blank.
+    """Return the value of inline content (SCXML B.2.8.1); None if it is blank.
+
+    It is JSON, a list or text in ECMAScript's form, or else the text itself.
     """
     stripped = text.strip()
     if not stripped:

@@ -19,8 +19,9 @@ from lumen.project.formats.xml_elements import XmlElement
 
 
 def template_of(element: XmlElement, names: ScriptNames) -> str:
-    """Return the text of a `<log>`: its label, and its expression with texts joined to values. Raises ScriptError if
-    the expression has no counterpart.
+    """Return the text of a `<log>`: its label, and its expression with texts joined to values.
+
+    Raises ScriptError if the expression has no counterpart.
     """
     source = element.get("expr")
     parts = _parts(parse_script(source), names) if source else ()
@@ -54,8 +55,9 @@ def _piece(node: ExpressionNode) -> str:
 
 
 def expression_of(text: str, vocabulary: Vocabulary) -> tuple[str, tuple[str, ...]]:
-    """Return the ECMAScript of Lumen's text, and the names in it that only Lumen has. Raises ScriptError if it can't be
-    expressed.
+    """Return the ECMAScript of Lumen's text, and the names in it that only Lumen has.
+
+    Raises ScriptError if it can't be expressed.
     """
     parts = split_template(text)
     if not any(isinstance(part, Placeholder) for part in parts):

@@ -25,8 +25,9 @@ _ID = re.compile(r"[^\s@*]+")
 
 
 def invocation(element: XmlElement, contents: ScxmlActionReader) -> dict[str, Any]:
-    """Return an invocation of the behaviour named like the file, with its id and input. Raises LeftOutError or
-    ScriptError if it can't be converted.
+    """Return an invocation of the behaviour named like the file, with its id and input.
+
+    Raises LeftOutError or ScriptError if it can't be converted.
     """
     kind, source = element.get("type"), element.get("src").removeprefix("file:")
     if kind.rstrip("/") not in {p.rstrip("/") for p in PROCESSORS} or "typeexpr" in element.attributes:
@@ -50,8 +51,9 @@ def invocation(element: XmlElement, contents: ScxmlActionReader) -> dict[str, An
 
 
 def read_scxml(file: str, content: bytes, title: str) -> tuple[dict[str, Any], list[Diagnostic]]:
-    """Return the data of a behaviour file, and findings about lost and changed parts. Raises ForeignFileError if the
-    file is not an SCXML document with states.
+    """Return the data of a behaviour file, and findings about lost and changed parts.
+
+    Raises ForeignFileError if the file is not an SCXML document with states.
 
     `title` is the behaviour's name if the document has none.
     """
@@ -138,8 +140,9 @@ class _ScxmlReader:
         return data if "target" in data else data | self._remembered(node)
 
     def _remembered(self, node: ForeignState) -> dict[str, Any]:
-        """Return the target of a history without one (which SCXML does not allow): the states in which its parent
-        begins.
+        """Return the target of a history without one (which SCXML does not allow).
+
+        It is the states in which the parent begins.
         """
         home = node.parent
         found = regular(home)[: None if home.source.tag == "parallel" else 1] if home else []
@@ -262,8 +265,9 @@ class _ScxmlReader:
         return rows
 
     def _named_apart(self, node: ForeignState, element: XmlElement, row: dict[str, Any]) -> dict[str, Any]:
-        """Return the row with an id that no invocation has at the same time. Raises LeftOutError if the file repeats an
-        id.
+        """Return the row with an id that no invocation has at the same time.
+
+        Raises LeftOutError if the file repeats an id.
         """
         id = row.get("id", row["behavior"])
 
@@ -286,8 +290,9 @@ class _ScxmlReader:
                 self.findings.changed(block.place, f"several `<{block.tag}>` become one list", hint)
 
     def _afters(self, node: ForeignState) -> dict[str, Any]:
-        """Return the blocks by which Lumen wrote an `after`, as `onentry` and `onexit`, and as `events` the delays by
-        event.
+        """Return the blocks by which Lumen wrote an `after`.
+
+        They are the `onentry` and `onexit` blocks and, as `events`, the delays by event.
         """
         found: dict[str, Any] = {"onentry": [], "onexit": [], "events": {}}
         name = node.name or self.outline.title
@@ -346,8 +351,9 @@ class _ActiveTogether:
 
 
 def _with_entry(data: dict[str, Any], late: list[ActionData]) -> dict[str, Any]:
-    """Return the data with `late` as the first actions of `entry`: these values must be computed before anything
-    else.
+    """Return the data with `late` as the first actions of `entry`.
+
+    These values must be computed before anything else.
     """
     entry = [*late, *data.pop("entry", [])]
     return {**{k: v for k, v in data.items() if k != "states"}, "entry": entry, "states": data["states"]}

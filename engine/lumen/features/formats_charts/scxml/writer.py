@@ -171,8 +171,9 @@ class _ScxmlWriter:
             )
 
     def _event(self, state: State, event: str) -> str:
-        """Return the name of an event; an event of the state's own (`after`, `onDone`) ends with its id in the
-        document.
+        """Return the name of an event.
+
+        An event of the state's own (`after`, `onDone`) ends with the state's id in the document.
         """
         return event.removesuffix(state.name) + self.ids[state.path] if event.endswith(f".{state.name}") else event
 

@@ -147,8 +147,9 @@ class XStateActionReader:
         return {"assign": sound}
 
     def _sent(self, data: Mapping[str, Any]) -> dict[str, Any]:
-        """Return the event of `raise`, `send` and `sendTo` with its data, its delay and its id. Raises _AbsentError
-        without an event.
+        """Return the event of `raise`, `send` and `sendTo` with its data, its delay and its id.
+
+        Raises _AbsentError without an event.
         """
         event, delay, id = data.get("event"), data.get("delay"), data.get("id")
         fields = event if isinstance(event, dict) else {"type": event}
@@ -167,8 +168,9 @@ class XStateActionReader:
         return body
 
     def _recipient(self, kind: str, data: Mapping[str, Any]) -> str:
-        """Return the actor that receives the event; empty for the machine itself, the default of `send` in version
-        4.
+        """Return the actor that receives the event; empty for the machine itself.
+
+        The machine is the default of `send` in version 4.
         """
         to = data.get("to")
         if to is None and kind == "xstate.send":
@@ -192,8 +194,9 @@ class XStateActionReader:
         return not has_errors([*found, *(d for d in report.diagnostics if d.code != "unknown-state")])
 
     def guard(self, data: Any, where: NodePath) -> str | None:
-        """Return a guard as Lumen's expression: a context key for a name without code. None (and report it) if it is
-        invalid.
+        """Return a guard as Lumen's expression: a context key for a name without code.
+
+        None (and report it) if it is invalid.
         """
         kind = data.get("type") if isinstance(data, dict) else data
         params = data.get("params") if isinstance(data, dict) else None

@@ -24,8 +24,9 @@ _MACHINE = ("types", "events", "phrases", "answers", "lists", "properties", "ren
 
 
 def read_xstate(file: str, content: bytes, title: str) -> tuple[dict[str, Any], list[Diagnostic]]:
-    """Return the data of a behaviour file, and findings about lost and changed parts. Raises ForeignFileError if the
-    file is not the configuration of a machine with states.
+    """Return the data of a behaviour file, and findings about lost and changed parts.
+
+    Raises ForeignFileError if the file is not the configuration of a machine with states.
 
     `title` is the behaviour's name if the machine has no id.
     """

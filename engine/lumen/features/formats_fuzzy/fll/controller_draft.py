@@ -38,8 +38,9 @@ PlaceOfWord = Callable[[RuleWord], Place]
 
 
 class ControllerDraft:
-    """Collects a controller's data; `names` maps the file's names to Lumen's, and `terms` those of each variable's
-    terms.
+    """Collects a controller's data.
+
+    `names` maps the file's names of variables to Lumen's, and `terms` does so for the terms of each variable.
 
     Variables of the same name are kept apart: a proposition refers to the first that has its term; in a condition,
     inputs come before outputs.

@@ -36,8 +36,9 @@ _USUAL = {"conjunction": "minimum", "disjunction": "maximum", "implication": "mi
 
 
 def read_fll(file: str, content: bytes, title: str) -> tuple[dict[str, Any], list[Diagnostic]]:
-    """Return the data of a controller file, and findings. Raises ForeignFileError if it is not an engine, or if no
-    output or rule is left.
+    """Return the data of a controller file, and findings.
+
+    Raises ForeignFileError if it is not an engine, or if no output or rule is left.
     """
     text, findings = decoded(file, content), ConversionFindings()
     return _FllReader(file, findings).engine(text), findings.diagnostics

@@ -97,8 +97,9 @@ def json_bytes(data: Any) -> bytes:
 
 
 def _envelope(message: Message, body: Any) -> dict[str, Any]:
-    """Return the body with its origin; a body that is not an object becomes `value` of one, since Foxglove shows
-    objects.
+    """Return the body with its origin.
+
+    A body that is not an object becomes the `value` of one, since Foxglove shows objects.
     """
     plain = isinstance(body, Mapping) and ORIGIN_KEY not in body
     origin: dict[str, Any] = {

@@ -17,8 +17,9 @@ from lumen.run.audio_track import AudioTrack
 
 
 def film_path(path: Path | None, robot: str) -> Path | None:
-    """Return the path, None if it is None. Raises UsageError if that robot is not simulated, or no .mp4 can be written
-    there.
+    """Return the path, None if it is None.
+
+    Raises UsageError if that robot is not simulated, or no .mp4 can be written there.
     """
     if path is None:
         return None

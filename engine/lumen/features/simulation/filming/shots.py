@@ -105,8 +105,9 @@ class ShotDirector:
 
 
 def camera_place(shot: Shot, who: Subjects, aspect: float) -> CameraPlace:
-    """Return the camera's place for a shot; `aspect` is the picture's width divided by its height. Without a visitor, a
-    shot that needs one becomes a full shot.
+    """Return the camera's place for a shot; `aspect` is the picture's width divided by its height.
+
+    Without a visitor, a shot that needs one becomes a full shot.
     """
     if shot is Shot.CLOSE_UP:
         return CameraPlace(_beside(who, CLOSE_DISTANCE, who.head[2] + 0.02), _higher(who.head, -0.03))

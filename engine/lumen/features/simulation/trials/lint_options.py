@@ -42,8 +42,9 @@ class PhysicsOptions:
             raise UsageError("--physics can't be combined with --watch, --fix, --diff or `-`")
 
     def more(self, found: Sequence[Findings], wanted: Wanted, options: argparse.Namespace) -> list[Findings]:
-        """Return the findings with those of the motions in simulation added; with `--format text`, print a summary of
-        these.
+        """Return the findings; with `--physics`, those of the motions in simulation are added.
+
+        With `--format text`, a summary of the simulations is printed.
         """
         if not options.physics:
             return [*found]
