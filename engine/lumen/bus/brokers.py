@@ -47,7 +47,7 @@ class Probe(Protocol):
         ...
 
     def misdeclared(self) -> Iterator[str]:
-        """Yield what is wrong with the declarations of the queues for unusable messages."""
+        """Yield each fault in the declarations of the queues for unusable messages, in words."""
         ...
 
     def close(self) -> None:
@@ -74,7 +74,7 @@ class Stream(Protocol):
     """A reader of a stream that survives outages of the broker."""
 
     def take(self) -> list[StreamEntry]:
-        """Return what was read since the last call, in the stream's order."""
+        """Return the entries that were read since the last call, in the stream's order."""
         ...
 
     def close(self) -> None:

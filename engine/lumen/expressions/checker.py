@@ -178,7 +178,7 @@ class _Checker:
         return ANY
 
     def argument(self, node: Identifier) -> ValueType:
-        """Return the type of a name in a function of the project, which must be one of its arguments."""
+        """Return the type of a name in a function of the project; report a name that is not one of its arguments."""
         arguments = self.around.variables
         if node.name in arguments:
             return type_of_schema(arguments[node.name])

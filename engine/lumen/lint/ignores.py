@@ -23,7 +23,7 @@ _WORD = re.compile(r"[^,\s]+")
 
 
 class Ignore(NamedTuple):
-    """An ignore comment."""
+    """A comment that ignores findings in one line."""
 
     place: Place
     """The place of the comment."""

@@ -174,7 +174,10 @@ def _elements(draft: ProjectDraft, body: Body, elements: list[ModelElement]) -> 
 
 
 def _role_elements(roles: Roles) -> Iterator[tuple[str, str, NodePath, bool]]:
-    """Yield what the roles name in the model besides `joints`: the kind of element, its name, its path, and False."""
+    """Yield the elements of the model that the roles name, besides `joints`.
+
+    Each comes with its kind, its name, its path, and False.
+    """
     sensors = roles.sensors
     one: list[tuple[str, str, NodePath]] = [
         ("body", roles.torso, ("torso",)),

@@ -62,7 +62,7 @@ def plain_texts(draft: ProjectDraft) -> Iterator[tuple[DocumentReport, NodePath]
 
 
 def spoken_places(draft: ProjectDraft) -> Iterator[tuple[DocumentReport, NodePath]]:
-    """Yield the place of each text that a robot says: not those of labels of buttons, or of what visitors say."""
+    """Yield the place of each text that a robot says; labels of buttons and phrases of visitors are left out."""
     for report, path in _places(draft):
         if path[0] == "lists" or (path[0] not in ("phrases", "questions") and path[-1] not in ("label", "phrases")):
             yield report, path

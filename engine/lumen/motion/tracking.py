@@ -130,7 +130,10 @@ class Tracker:
         return self._command(self.clamped({joint: times.ahead.get(joint, 0.0) for joint in self.joints}), now)
 
     def _stood(self, joint: str, time: float) -> float:
-        """Return the reference for a turn [rad]: the joint's pose at that time plus its sag, which is learned here."""
+        """Return the reference for a turn [rad]: the joint's pose at `time` plus the joint's sag.
+
+        The sag is learned while the joint and its commands are steady.
+        """
         pose, start = self._poses.at(time)[joint], time - STILL_TIME
         sag = self._sag.get(joint, 0.0)
         if self._poses.steady(joint, start, time, STILL_ANGLE) and self._commanded.steady(

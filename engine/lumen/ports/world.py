@@ -65,7 +65,7 @@ class HasCharger(Protocol):
 
 @runtime_checkable
 class Clock(Protocol):
-    """The exhibition's time."""
+    """The time of the exhibition, real or simulated."""
 
     def now(self) -> float:
         """Return the time [s], which never decreases."""

@@ -202,7 +202,10 @@ class _Builder:
         return _children(entry)[:1]
 
     def remembered(self, entry: OutlinedState) -> tuple[str, ...]:
-        """Return the paths that a history state without a memory enters: its target, else its parent's default."""
+        """Return the paths that a history state without a memory enters: its target, else its parent's default.
+
+        A target that is a history state is reported, and the result is empty.
+        """
         parent = entry.parent
         assert parent is not None  # the schema does not allow the root to be a history state
         if "target" in entry.data:

@@ -110,7 +110,7 @@ def items(lines: Sequence[str], index: int) -> Iterator[Slip]:
 
 
 def _usual(lines: Sequence[str], index: int) -> bool:
-    """Return True if the key in that line is two spaces further in elsewhere, as in the other items of a list."""
+    """Return True if the key in the line `index` also occurs two spaces further in, as in other items of a list."""
     key = f"  {lines[index].split(':')[0]}:"
     return bool(_KEYED.match(lines[index])) and any(line.startswith(key) for line in lines)
 

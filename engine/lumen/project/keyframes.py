@@ -86,7 +86,10 @@ class KeyframeReader:
         return joined(parts, now)
 
     def _keyframe(self, item: Mapping[str, Any], here: NodePath, interpolation: Interpolation) -> MotionDefinition:
-        """Return one keyframe as a motion without length: its keys and cues are at time 0."""
+        """Return one keyframe as a motion without length: its keys and cues are at time 0.
+
+        Handles without an angle, and keys that are allowed only in a block, are reported.
+        """
         how = Interpolation(item.get("interpolation", interpolation))
         handles = self.poses.handles(item, here)
         tracks = {
@@ -130,7 +133,10 @@ class KeyframeReader:
         return skill_cue(Do(name, arguments), where)
 
     def _block(self, item: Mapping[str, Any], here: NodePath, interpolation: Interpolation) -> MotionDefinition:
-        """Return the motion of a block, or another motion, repeated, scaled and mirrored as the item demands."""
+        """Return the motion of a block, or another motion, repeated, scaled and mirrored as the item specifies.
+
+        Keys that are not allowed beside `keyframes` or `play` are reported.
+        """
         for word in (
             "joints",
             "roles",
@@ -183,7 +189,10 @@ class KeyframeReader:
         return joined(((i * part.duration, round) for i, round in enumerate(rounds)), part.duration * times)
 
     def _moment(self, item: Mapping[str, Any], here: NodePath) -> float | None:
-        """Return when an item begins, from the beginning of its list [s]; None if it has no usable time."""
+        """Return when an item begins, from the beginning of its list [s]; None if it has no usable time.
+
+        Two times, and a `beat` without a `tempo`, are reported.
+        """
         if "at" in item and "beat" in item:
             hint = "keep one of them"
             self.report(TWO_TIMES, (*here, "beat"), "a keyframe has `at` or `beat`, not both", hint=hint, key=True)

@@ -211,7 +211,7 @@ def _is_item_of(lines: Sequence[str], row: int, i: int) -> bool:
 
 
 def _group(lines: Sequence[str], row: int, complained: set[int]) -> tuple[int, ...]:
-    """Return the block of that line and the following blocks in the same column that have complaints too."""
+    """Return the rows of the block at `row` and of the blocks after it in the same column that have complaints too."""
     rows = _block(lines, row)
     while True:
         following = next((i for i in range(rows[-1] + 1, len(lines)) if is_content(lines[i])), None)

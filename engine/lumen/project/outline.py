@@ -122,7 +122,7 @@ class BehaviorOutline:
         return did_you_mean(target, known)
 
     def _loop(self, source: OutlinedState, key: str) -> OutlinedState | None:
-        """Return the outermost state with a `for` that contains the state of that key but not `source`, or None."""
+        """Return the outermost state with a `for` that contains the state `key` but not `source`; None without one."""
         inner = [e for e in self.entries.values() if e.path.rpartition(".")[2] == key]
         state, found = (inner[0].parent if inner else None), None
         while state is not None:

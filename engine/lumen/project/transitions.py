@@ -178,7 +178,10 @@ class TransitionReader:
         )
 
     def _approval(self, data: Any, where: NodePath, event: str) -> Approval | None:
-        """Return what must be approved; if the transition can't wait for approval, report that and return None."""
+        """Return the approval that a transition needs.
+
+        If the transition can't wait for approval, report that and return None.
+        """
         if event == "*" or event.split(".")[0] in _OWN or len(set(where) & _OUTSIDE) == 0:
             message = "only a transition that is started by an event from outside can wait for approval"
             hint = "go to a state that waits for a button, and add `approve` to the transition in its `on`"

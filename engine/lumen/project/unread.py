@@ -111,7 +111,7 @@ def _first(root: Path, folder: str, endings: tuple[str, ...], depth: int, look: 
 
 
 def _home_hint(folder: str, models: Collection[str]) -> str:
-    """Return what to do with the files of a folder that is not read."""
+    """Return a hint about where the files of a folder that is not read belong."""
     above, _, name = folder.rpartition("/")
     if above in (LIFE_FOLDER, GESTURES_FOLDER) and name in models:
         own = life_of(name) if above == LIFE_FOLDER else gestures_of(name)
@@ -132,7 +132,7 @@ def _home_hint(folder: str, models: Collection[str]) -> str:
 
 
 def robots_own_hint(name: str, models: Collection[str]) -> str:
-    """Return what to do with a folder in motions/ that is named after no robot model."""
+    """Return a hint about the right name of a folder in motions/ that is named after no robot model."""
     shared = {PurePosixPath(path).name: path for path in KINDS if path.startswith(f"{MOTIONS}/")}
     if (near := nearest(name, {*models, *shared})) in shared:
         return f"did you mean `{shared[near]}/`?"

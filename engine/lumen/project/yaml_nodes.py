@@ -174,7 +174,7 @@ def _decimal(before: yaml.Node, key: yaml.Node, value: yaml.Node) -> str:
 
 
 def _begun_anew(node: yaml.Node) -> tuple[yaml.Node, yaml.Node] | None:
-    """Return an empty key after which the keys of a map repeat, and the first of those; None if no keys repeat."""
+    """Return an empty key after which two or more keys of a map repeat, and the first of those; else None."""
     empty = [isinstance(value, yaml.ScalarNode) and not value.style and not value.value for _, value in node.value]
     if True not in empty:
         return None

@@ -18,21 +18,26 @@ class Ranked(NamedTuple):
 
 
 class Weights(NamedTuple):
-    """The weight of each feature of a passage, the utility of “none”, and the least probability of an answer."""
+    """The parameters by which passages are ranked and an answer is chosen."""
 
     features: tuple[float, ...]
+    """The weight of each feature of a passage."""
     none: float
+    """The utility of the answer “none”."""
     least: float
+    """The least probability of an answer."""
 
 
 class AnswerRates(NamedTuple):
-    """The share of questions with an answer that get it, and the share of all questions that get a wrong one.
+    """How often questions are answered rightly and wrongly.
 
     All questions are weighted as visitors are assumed to ask them: the share UNANSWERABLE has no answer.
     """
 
     recall: float
+    """The share of questions with an answer that get it."""
     wrong: float
+    """The share of all questions that get a wrong answer."""
 
 
 class WrongAnswer(NamedTuple):

@@ -142,7 +142,7 @@ def read_sound(p: CommandParameters) -> PlaySound:
 
 
 def read_stop(p: CommandParameters) -> Stop:
-    """Return the command to stop `what`: walk, play, say or all."""
+    """Return the command to stop `what`: walk, play, say or all. Raises BadCommandError for any other word."""
     what = p.text("what", "all").lower()
     known: dict[str, Channel] = {channel: channel for channel in get_args(Channel)}
     if what not in known:
@@ -156,7 +156,10 @@ def read_rest(p: CommandParameters) -> Rest:
 
 
 def read_style(p: CommandParameters) -> LifeStyle:
-    """Return the project's life style of that name, or the style that switches life off."""
+    """Return the project's life style of that name, or the style that switches life off.
+
+    Raises BadCommandError if there is no such style.
+    """
     name = shown(p.text("style"))
     if name == STILL:
         return STILL_STYLE
@@ -166,7 +169,10 @@ def read_style(p: CommandParameters) -> LifeStyle:
 
 
 def read_recording(p: CommandParameters) -> Record:
-    """Return the command to record; its `duration` [s] is a parameter that Lumen added."""
+    """Return the command to record. Raises BadCommandError if its `duration` [s] is out of range.
+
+    The `duration` is a parameter that Lumen added.
+    """
     duration = p.number("duration", RECORDING_DURATION)
     if not 0.1 <= duration <= MAX_RECORDING_DURATION:
         longest = f"{MAX_RECORDING_DURATION:g} s"

@@ -87,7 +87,10 @@ class CommandReports:
         return self._known.get((sender, id)) or self._known.get((None, id))
 
     def asked(self, id: str, sender: str) -> CommandRecord | None:
-        """Return the record that this sender means by an id: its own command's, else the newest with that id."""
+        """Return the record that `sender` means by an id: its own command's, else the newest with that id.
+
+        Return None if no command has that id.
+        """
         others = (record for record in reversed(self._known.values()) if record.id == id)
         return self.find(id, sender) or next(others, None)
 

@@ -40,7 +40,7 @@ class UnderWay(NamedTuple):
 
 
 class Spoken(NamedTuple):
-    """A visitor's words."""
+    """The last words of a visitor."""
 
     text: str
     at: float

@@ -19,7 +19,7 @@ from lumen.statechart import Step
 
 
 class EventData:
-    """A checker of event data by the schemas of a project: under `events:`, of routes, and of robots."""
+    """Checks event data by the schemas of a project: those under `events:`, of routes, and of robots."""
 
     def __init__(self, project: Project) -> None:
         self.project = project

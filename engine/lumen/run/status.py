@@ -76,7 +76,7 @@ def _time(snapshot: Snapshot, at: float) -> str:
 
 
 def _visitor(project: Project, snapshot: Snapshot) -> str | None:
-    """Return the visitor's name, from the key of the context that the memory module uses, too."""
+    """Return the visitor's name, or None, from the key of the context that the memory module also uses."""
     memory = project.modules.get(MEMORY)
     name = snapshot.context.get(str(memory.options.get("visitor", VISITOR_KEY)) if memory else VISITOR_KEY)
     return name if isinstance(name, str) and name else None

@@ -12,7 +12,7 @@ from lumen.upkeep.garbage import gc_paused
 
 
 class CompiledMachine(NamedTuple):
-    """A compiled machine."""
+    """A machine, with those that it invokes, ready to run."""
 
     chart: Chart
     planner: MicrostepPlanner

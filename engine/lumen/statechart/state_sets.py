@@ -9,7 +9,7 @@ from lumen.statechart.history import History
 
 
 class EntrySet(set[StateNode]):
-    """States to enter."""
+    """The states that a microstep enters."""
 
     def __init__(self) -> None:
         super().__init__()

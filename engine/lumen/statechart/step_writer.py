@@ -80,7 +80,7 @@ class StepWriter(ActionText):
         known.first(partial(self.do, node, otherwise))
 
     def settle(self, node: StateNode, branch: int, known: Certain) -> None:
-        """Write that one branch of a `parallel` has ended."""
+        """Write the line that records the end of one branch of a `parallel`."""
         path = self.constant(node.path)
         self.line(f"doing = placed(doing, {path}, settled(doing[{path}], {branch}))")
 

@@ -75,7 +75,10 @@ def step(machine: MachineDefinition, snapshot: Snapshot, event: Event) -> Step:
 
 
 def in_full(machine: MachineDefinition, snapshot: Snapshot, event: Event) -> Step:
-    """Return the same as `step` by the full algorithm, for callers that have tried the fast path already."""
+    """Return the same as `step` by the full algorithm, for callers that have tried the fast path already.
+
+    Raises SnapshotError if the machine lacks a state of the snapshot.
+    """
     try:
         context = open_context(compiled(machine), snapshot, event, max(snapshot.at, event.at))
     except KeyError as error:

@@ -106,7 +106,7 @@ class ReadSentence:
         return self._negating("negations_after", after, self.clauses[find.end - 1], NEAR_AFTER)
 
     def _negating(self, kind: str, places: Iterable[int], clause: int, near: int) -> int | None:
-        """Return the index of the first word of a kind in the clause, at most `near` non-filler words away."""
+        """Return the index of the first word of a kind in the clause, at most `near` non-filler words away, or None."""
         negations, contrasts, between = self._marked(kind), self._marked("contrasts"), 0
         for i in places:
             if self.clauses[i] != clause or contrasts[i]:

@@ -103,7 +103,10 @@ def words(text: str) -> list[str]:
 
 
 def after(text: str, phrase: str) -> str:
-    """Return what follows the phrase in the text, without blanks and punctuation around it; "" if it has no phrase."""
+    """Return the text that follows the phrase, without blanks and punctuation around it.
+
+    The result is empty if the text does not contain the phrase.
+    """
     text, sought = text[:MAX_TEXT_EXAMINED], list(folded(phrase[:MAX_TEXT_EXAMINED]))
     found: list[str] = []
     ends: list[int] = []

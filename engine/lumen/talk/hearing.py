@@ -142,7 +142,7 @@ class Hearing:
     def best(
         self, reading: ReadSentence, row: Hears, asked: set[str], context: Mapping[str, Any], *, counting: bool = True
     ) -> Find | None:
-        """Return the find for a row: the strongest; of equals, that of the upper answer, then the last.
+        """Return the strongest find for a row; of equals, that of the upper answer, then the last. None without finds.
 
         Only finds that count are considered, unless `counting` is false.
         """

@@ -122,7 +122,10 @@ class _Reader:
         return found
 
     def sequence(self, closing: str) -> list[str]:
-        """Return the texts of the forms up to a closing bracket or a `|`, which is not read."""
+        """Return the texts of the forms up to a closing bracket or a `|`, which is not read.
+
+        Raises PatternError if there are more than `MAX_FORMS`.
+        """
         found = [""]
         while self.position < len(self.phrase) and (sign := self.phrase[self.position]) not in ")]}|":
             more = self.group() if sign in "([" else [self.slot() if sign == "{" else self.plain()]

@@ -98,7 +98,7 @@ class DiskWatch:
 
 
 def room(folder: Path) -> str:
-    """Return what is wrong with the disk of that folder, or of its nearest existing parent; empty if nothing is."""
+    """Return the trouble with the disk of a folder, or of its nearest existing parent; empty if there is none."""
     while not folder.exists() and folder != folder.parent:
         folder = folder.parent
     try:

@@ -103,7 +103,10 @@ def kind_of(entry: Mapping[str, Any]) -> str:
 
 
 def told_of(entry: Mapping[str, Any]) -> dict[str, Any]:
-    """Return what a page shows of an entry: `kind`, `text`, and `texts` by language for those that differ from it."""
+    """Return the `kind` and the `text` of an entry for a page.
+
+    In `texts` are the texts of other languages, if they differ from `text`.
+    """
     text = text_of(entry)
     others = {code: other for code, words in OTHERS.items() if text and (other := text_of(entry, words)) != text}
     return {"text": text, "kind": kind_of(entry), **({"texts": others} if others else {})}

@@ -168,7 +168,7 @@ class Ears(Module):
         self.well()
 
     def _heard(self, sound: Sound) -> Sequence[Hypothesis]:
-        """Return what may have been said in a sound that has just ended; none if nothing was.
+        """Return the sentences that may have been said in a sound that has just ended; none if nobody spoke.
 
         Only the likeliest text may interrupt the robot: alternatives for its own words often contain a phrase.
         """

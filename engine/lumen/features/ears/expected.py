@@ -34,7 +34,7 @@ class HeardName(NamedTuple):
     name: str
 
     def phrases(self) -> list[str]:
-        """Return its phrases in all languages.
+        """Return the phrases of the name in all languages.
 
         For an entry's field these are the phrases of all entries, since any may be the current one.
         """
@@ -53,7 +53,7 @@ class HeardName(NamedTuple):
 
 
 def heard_names(project: Project, states: Collection[str] | None) -> list[HeardName]:
-    """Return what the active states hear, in `hears` and in guards that call `heard` or `lookup`.
+    """Return the names that the active states hear, in `hears` and in guards that call `heard` or `lookup`.
 
     `states` are the names of all active states, including enclosing ones. If they are unknown, or belong to other files
     than these, all states of all behaviours count.

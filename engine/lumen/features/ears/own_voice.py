@@ -46,7 +46,7 @@ class OwnVoice:
                     self._end(id, at)
 
     def during(self, begin: float, end: float) -> list[Utterance]:
-        """Return what the robot said in this time [s], with its echo, the earliest first."""
+        """Return the robot's utterances between two times [s], each with its echo, the earliest first."""
         now = [u._replace(end=min(end, u.begin + LONGEST)) for u in self._saying.values()]
         heard = [u._replace(end=u.end + ECHO) for u in (*self._said, *now)]
         return sorted((u for u in heard if u.begin < end and u.end > begin), key=lambda u: u.begin)

@@ -24,7 +24,7 @@ MAX_PHRASES = 20
 
 
 def hover(analysis: Analysis, file: str, line: int, column: int) -> str:
-    """Return what to show for a line and column, from 1: about the name or key and its findings; empty for nothing."""
+    """Return the text for a line and column, from 1: about the name or key there and its findings; empty for none."""
     parts = [of_row_at(analysis, file, line, column)]
     use = analysis.index.at(file, line, column)
     if use:

@@ -227,7 +227,7 @@ class _Reader:
         yield from self.parts(path, key, names, key=True)
 
     def valued(self, kind: NameKind, path: NodePath, value: str) -> Iterator[NameUse]:
-        """Yield the uses of names in a value with names of that kind."""
+        """Yield the uses of names in the value at `path`, which is of the kind `kind`."""
         match kind:
             case NameKind.EXPRESSION:
                 yield from self.parts(path, value, in_expression(value))
@@ -331,7 +331,10 @@ def _state_at(path: NodePath) -> str:
 
 
 def _outline(file: str, document: Document) -> BehaviorOutline | None:
-    """Return the states of a behaviour's file, which may have errors; None if it is unusable or another file."""
+    """Return the states of a behaviour's file, which may have errors.
+
+    Return None for other files, and if the states can't be determined.
+    """
     if kind_of(file) != "behavior":
         return None
     try:

@@ -73,7 +73,7 @@ class FaceGallery:
         return self._keep([face for face in self._faces if name_key(face[0]) != name_key(name)])
 
     def expire(self, before: float) -> int:
-        """Delete the pictures made before that time [s since 1970]; return their number."""
+        """Delete the pictures made before the time `before` [s since 1970]; return their number."""
         return self._keep([face for face in self._faces if face[1] >= before])
 
     def _keep(self, faces: list[tuple[str, float, Any]]) -> int:

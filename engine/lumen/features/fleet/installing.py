@@ -121,7 +121,7 @@ def _memories(root: Path) -> Iterator[tuple[Home, str, AgentMemory]]:
 
 
 def _own(files: Mapping[str, bytes]) -> dict[str, bytes]:
-    """Return those of the files that a bundle may change: all of the project but fleet.yaml."""
+    """Return the files that a bundle may change: all files of the project but fleet.yaml."""
     return {path: content for path, content in files.items() if path != FLEET_FILE and belongs(path)}
 
 

@@ -244,7 +244,10 @@ class _FclReader:
                 self.draft.variable("inputs", name, self.at(statement))["range"] = ranged(*ends)
 
     def operators(self, section: FclSection) -> dict[str, Any]:
-        """Return a rule block's AND, OR and ACT; its ACCU is kept for the outputs."""
+        """Return a rule block's AND, OR and ACT; its ACCU is kept for the outputs.
+
+        Settings that are repeated, and operators that do not match each other, are reported.
+        """
         found: dict[str, Any] = {}
         partners: dict[str, str] = {}
         accu, seen = "", set[str]()

@@ -112,7 +112,7 @@ class _MjcfReader:
         return self.defaults.whole(element, childclass)
 
     def read(self) -> RobotModel:
-        """Return the robot."""
+        """Return the robot; report the parts of the file that are left out or changed."""
         tell_losses(self.root, KNOWN, self.findings, lambda element: element.tag != "equality")
         for element in self.root.walk():
             if element.tag in _PLACED_ELSEWHERE:
@@ -219,7 +219,10 @@ class _MjcfReader:
         self.findings.lost(joint.place, "the model has a free joint to the world", hint)
 
     def limits(self, joint: XmlElement) -> tuple[float | None, float | None]:
-        """Return the joint's range [rad], None twice if it turns endlessly."""
+        """Return the joint's range [rad]; both ends are None if it turns endlessly.
+
+        An empty range is reported and counts as endless.
+        """
         span = self.numbers.all(joint, "range", 2)
         limited = joint.get("limited", "auto")
         self.one_of(joint, limited, "limited", ("true", "false", "auto"))

@@ -99,7 +99,7 @@ class Numbers:
         self.findings = findings
 
     def all(self, element: XmlElement, name: str, count: int) -> tuple[float, ...] | None:
-        """Return `count` numbers; None if the attribute is missing or invalid."""
+        """Return `count` numbers; None if the attribute is missing or invalid, and report an invalid one."""
         text = element.get(name)
         if not text:
             return None

@@ -9,7 +9,7 @@ from lumen.language.diagnostics import Place
 
 @dataclass(frozen=True, slots=True)
 class ModelJoint:
-    """A hinge joint."""
+    """A hinge joint of an imported robot."""
 
     name: str
     link: str
@@ -51,7 +51,7 @@ class ModelCamera:
 
 @dataclass(frozen=True)
 class RobotModel:
-    """A robot's model."""
+    """The joints, links, cameras and sensors of an imported robot."""
 
     name: str
     file: str

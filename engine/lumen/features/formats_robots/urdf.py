@@ -76,7 +76,7 @@ class _UrdfReader:
         self.driven: dict[str, XmlElement] = {}
 
     def read(self) -> RobotModel:
-        """Return the robot."""
+        """Return the robot; report the parts of the file that are left out or changed."""
         tell_losses(self.root, KNOWN, self.findings)
         joints = [joint for joint in self.root.of("joint") if self.known(joint)]
         frames: dict[str, NestedFrame] = {}
@@ -164,7 +164,8 @@ class _UrdfReader:
     def limits(self, limit: XmlElement | None) -> tuple[float | None, float | None, float | None, float | None]:
         """Return the lowest and highest angle, the speed and the torque.
 
-        Each is None if it is missing or, except for angles, not positive.
+        A missing angle is 0 if the other one is given, else None; an empty range is reported, and both are None. Speed
+        and torque are None if they are missing or not positive.
         """
         if limit is None:
             return None, None, None, None
@@ -181,7 +182,10 @@ class _UrdfReader:
         return low, high, speed if speed and speed > 0 else None, effort if effort and effort > 0 else None
 
     def mimic(self, joint: XmlElement) -> tuple[str, bool]:
-        """Return the joint that this one follows, and whether with the same angle."""
+        """Return the name of the joint that this one follows, empty if none, and whether with the same angle.
+
+        A `<mimic>` that names no joint is reported.
+        """
         mimic = next(joint.of("mimic"), None)
         if mimic is None:
             return "", True

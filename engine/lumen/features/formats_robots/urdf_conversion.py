@@ -29,7 +29,7 @@ _SEEN, _TOUCHING = 2, 3
 
 @dataclass(frozen=True)
 class ConvertedRobot:
-    """A converted robot."""
+    """A URDF converted to MJCF, with its meshes."""
 
     mjcf: str
     meshes: Mapping[str, bytes]

@@ -72,7 +72,7 @@ class RecordingPart(Part):
         return self._recorder.trouble if self._recorder else ""
 
     def marking(self) -> str:
-        """Return a text about what is recorded of this moment; empty for nothing."""
+        """Return a text about the recording of this moment; empty if nothing is recorded."""
         if self._ring:
             minutes = self._said.ring / 60
             return f"the last {minutes:g} min and the next minute are kept in {self._folder.path}"
@@ -140,7 +140,7 @@ class RecordingPart(Part):
         return [*self._explaining(pieces), *journal_files(self._root, began, ended, self._robot), *look]
 
     def _rescued(self, pieces: Sequence[Path]) -> Iterable[Recorded]:
-        """Return what a recording of an earlier run's pieces needs to be understood, with the journal of their time."""
+        """Return the files, the journal and the shape for a recording of pieces that an earlier run left."""
         times = [piece.stat().st_mtime for piece in pieces]
         return self._kept(min(times) - PIECE_PERIOD, max(times), pieces)
 

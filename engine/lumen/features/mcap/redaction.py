@@ -37,7 +37,7 @@ class Redaction(NamedTuple):
 
 
 def redacted(path: Path, person: PersonName) -> tuple[Redaction, Changed]:
-    """Return what in a recording is about a person, and the function that removes it.
+    """Return the number of items about a person in a recording, and the function that removes them.
 
     Raises RecordingError if it is not a recording.
     """

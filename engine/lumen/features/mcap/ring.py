@@ -164,6 +164,6 @@ class RingTape:
 
 
 def kept_as(folder: RecordingsFolder, at: float, why: str) -> Path:
-    """Return the path for a recording of that time [s since 1970] and reason."""
+    """Return the path for a recording made at `at` [s since 1970] for the reason `why`."""
     word = re.sub(r"[^\w]+", "-", why.lower()).strip("-")[:40]
     return writable(folder.path / f"{file_stamp(at)}-{word or 'mark'}{SUFFIX}")

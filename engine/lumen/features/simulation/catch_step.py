@@ -116,6 +116,6 @@ class CatchStep:
         joints[self._legs.names[side][role]] += self._legs.signs[side][role] * by
 
     def _level(self, place: CapturePoint) -> dict[str, float]:
-        """Return the swinging leg's angles with its sole level at that place, seen from the other sole."""
+        """Return the angles of the swinging leg that hold its sole level at `place`, relative to the other sole."""
         sole = self._falling.soles[self._rests] + place
         return hold_level(self._legs, self.side, self._falling.axes, sole, self._sent)

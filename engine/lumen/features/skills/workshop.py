@@ -80,7 +80,7 @@ class _Bench:
     state: str = ""
 
     def now(self) -> str:
-        """Return its state now, and note when it changed."""
+        """Return the present state, and record the time if it has changed."""
         if self.busy or self.remote:
             state = RUNNING
         elif any(one.alive for one in self.idle):

@@ -100,7 +100,7 @@ class Store:
         self._do(lambda db: db.execute(sql, (name_key(name), name, now, now, known_data)))
 
     def visitor(self, name: str) -> dict[str, Any] | None:
-        """Return what is known of a visitor, None if nothing is."""
+        """Return the stored data of a visitor; None if the visitor is unknown."""
         sql = f"SELECT {_VISITOR} FROM visitors WHERE key = ?"
         rows = self._do(lambda db: db.execute(sql, (name_key(name),)).fetchall())
         return _visitor(rows[0]) if rows else None

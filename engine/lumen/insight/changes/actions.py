@@ -132,7 +132,7 @@ def _whole(texts: Sequence[object] | None) -> str:
 
 
 def described(action: Action) -> str:
-    """Return what an action does, as the end of a sentence."""
+    """Return the effect of an action, in words that end a sentence."""
     match action:
         case SayText(texts):
             return f"says {quoted(next(iter(texts.values()))[0].shown)}"

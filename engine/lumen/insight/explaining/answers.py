@@ -22,7 +22,7 @@ LOOKED_BACK = 60.0
 
 @dataclass(frozen=True, slots=True)
 class WhyAnswer:
-    """Why something happened."""
+    """The causes of one effect, which `lumen why` prints."""
 
     what: str
     """The effect in words."""

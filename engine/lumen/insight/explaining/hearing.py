@@ -68,7 +68,7 @@ class HeardRow(NamedTuple):
 
 
 def heard_rows(machine: MachineDefinition, state: str, scope: Scope) -> tuple[HeardRow, ...]:
-    """Return the result of each row of a state for the sentence of the scope's event, in the order of the file.
+    """Return the result of each row of a state for the sentence in the event of `scope`, in the order of the file.
 
     `state` is a path; guards are evaluated in `scope`.
     """

@@ -40,7 +40,7 @@ class Moment(NamedTuple):
     """The place in the hall."""
 
     def scope_of(self, node: StateNode) -> Scope:
-        """Return the scope that an expression in that state saw."""
+        """Return the scope in which the expressions of the state `node` were evaluated."""
         return self.scope._replace(state=node.view(self.scope.language, self.place))
 
     @property

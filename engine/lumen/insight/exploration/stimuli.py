@@ -157,7 +157,7 @@ class StimulusFinder:
 
 
 def _uses(heard: HeardTransition) -> Iterator[ExpressionUse]:
-    """Yield what a transition and the entry of its targets read: both see the same event."""
+    """Yield the expressions of a transition and of the entry of its targets: both see the same event."""
     yield from of_transition(heard.transition)
     for target in heard.transition.targets:
         yield from of_block(heard.machine.states[target].entry)

@@ -20,7 +20,7 @@ BROKEN = ("start", "gap", DROPPED)
 
 
 class RecordedVisit(NamedTuple):
-    """A visit."""
+    """A visit in a journal."""
 
     number: int
     """The visit's number in the journal, from 1."""

@@ -117,7 +117,7 @@ def _kept(ruled: Paces, kept: Mapping[str, Mapping[str, float]]) -> Paces:
 
 
 def _by_rule(pace: GaitParameters, legs: LegGeometry) -> GaitParameters:
-    """Return that pace, scaled to these legs."""
+    """Return the parameters `pace`, scaled to these legs."""
     scale, slow, sole = scale_of(legs), time_scale_of(legs), legs.sole_size
     bent = (pace.torso - FOUND_BELOW) / FOUND_LENGTH
     narrowest = 2 * sole.inner + FOUND_GAP * scale

@@ -59,7 +59,10 @@ class MotionWriter:
         }
 
     def _known(self, curves: JointCurves) -> JointCurves:
-        """Return the curves of joints that the body has; of two joints with one motor, only the leading one."""
+        """Return the curves of joints that the body has; of two joints with one motor, only the leading one.
+
+        Unknown joints are reported, and followers whose curve differs from that of the leading joint.
+        """
         found: dict[str, list[CurvePoint]] = {}
         for joint, points in curves.items():
             leader = self.body.shared.get(joint, "")
@@ -74,7 +77,10 @@ class MotionWriter:
         return found
 
     def _possible(self, joint: str, points: list[CurvePoint]) -> list[CurvePoint]:
-        """Return the points with each angle cut to the joint's limits, without those that come too early."""
+        """Return the points with each angle cut to the joint's limits.
+
+        Points that come too early are reported and left out.
+        """
         kept: list[CurvePoint] = []
         for point in points:
             if point.time < 0:
@@ -99,7 +105,10 @@ class MotionWriter:
         return angle
 
     def _later(self, curves: JointCurves) -> JointCurves:
-        """Return the curves; if the first pose is at 0 s, delay all keys so that the robot has time to reach it."""
+        """Return the curves; if the first pose is at 0 s, delay all keys so that the robot has time to reach it.
+
+        The delay is reported.
+        """
         first = min((points[0] for points in curves.values()), key=lambda p: p.time, default=None)
         if first is None or first.time >= MIN_KEY_DISTANCE:
             return curves
@@ -111,7 +120,7 @@ class MotionWriter:
         }
 
     def _fitted(self, curves: JointCurves) -> JointCurves:
-        """Return the curves within the body's limits, and with `retime` within its speeds."""
+        """Return the curves within the body's limits, and with `retime` within its speeds; report the changes."""
         curves = within_limits(curves, self.body, self.findings)
         fast = too_fast(curves, self.body) if self.retime else []
         if not fast:

@@ -80,11 +80,11 @@ class Part:
         """
 
     def marking(self) -> str:
-        """Return what the part saves of the minutes around a mark that an operator has just set; empty for nothing."""
+        """Return a text about the part's recording around a mark that an operator has just set; empty for none."""
         return ""
 
     def summary(self) -> Iterator[str]:
-        """Yield the lines that it prints at the end."""
+        """Yield the lines that the part prints at the end."""
         return iter(())
 
     def close(self) -> None:

@@ -24,7 +24,7 @@ _LEVEL = 1
 
 
 def recall(root: Path, files: Mapping[str, bytes]) -> Project | None:
-    """Return the project of these files; None if it is not in the cache."""
+    """Return the project of these files; None if the cache does not have it, or can't be read."""
     packed = CacheFolder("projects").read(_name(root, files))
     if packed is None:
         return None

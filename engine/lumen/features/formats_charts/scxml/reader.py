@@ -156,7 +156,10 @@ class _ScxmlReader:
                 self.findings.lost(transition.attribute_place(name), message, "delete it")
 
     def _default(self, node: ForeignState, transition: XmlElement, key: str) -> dict[str, Any]:
-        """Return `initial` or a history's `target`, with the transition's actions; empty if its target is invalid."""
+        """Return `initial` or a history's `target`, with the transition's actions.
+
+        If the target is invalid, the result is empty and the reason is reported.
+        """
         home = node if key == "initial" else node.parent
         found = self.transitions.targets(transition)
         if found is None or not found:
@@ -228,7 +231,7 @@ class _ScxmlReader:
         return data | self._ours(node)
 
     def _ours(self, node: ForeignState) -> dict[str, Any]:
-        """Return the data in `<lumen:state>`, which only Lumen writes."""
+        """Return the data in `<lumen:state>`, which only Lumen writes; report keys without a counterpart."""
         data: dict[str, Any] = {}
         ours = self._own(node.source, "state", {})
         for key, value in ours.items() if isinstance(ours, dict) else (("", ours),):

@@ -159,7 +159,10 @@ class _XStateWriter:
         return data
 
     def _invoke(self, invoke: Invoke, rows: dict[str, list[Any]]) -> dict[str, Any]:
-        """Return an actor named like the behaviour; its input is also in `meta`, as Lumen's expressions."""
+        """Return an actor named like the behaviour, and report that `setup` must provide it.
+
+        The input of the invocation is also in `meta`, as Lumen's expressions.
+        """
         hint = f"give `setup` the actor `{invoke.behavior}` from `lumen export xstate {invoke.behavior}`"
         self.report.changed(f"`invoke` of `{invoke.behavior}` becomes an actor", invoke.where, hint)
         data: dict[str, Any] = {"id": invoke.id, "src": invoke.behavior}
@@ -194,7 +197,10 @@ class _XStateWriter:
         return row
 
     def _heard(self, transition: Transition, row: Hears) -> dict[str, Any]:
-        """Return the guard of a row of `hears`: one that `setup` must implement, or an expression."""
+        """Return the guard of a row of `hears`: one that `setup` must implement, or an expression.
+
+        The change is reported, since other tools do not have such rows.
+        """
         if key := key_of(row):
             self.report.changed(f"`{row.title}` becomes a guard `{HEARS_GUARD}`", transition.where, LOST_ELSEWHERE)
             source = {"source": as_written(transition.guard.source)} if transition.guard else {}

@@ -40,10 +40,9 @@ PlaceOfWord = Callable[[RuleWord], Place]
 class ControllerDraft:
     """Collects a controller's data.
 
-    `names` maps the file's names of variables to Lumen's, and `terms` does so for the terms of each variable.
-
-    Variables of the same name are kept apart: a proposition refers to the first that has its term; in a condition,
-    inputs come before outputs.
+    `names` maps the file's names of variables to Lumen's, and `terms` does so for the terms of each variable. Variables
+    of the same name are kept apart: a proposition refers to the first that has its term; in a condition, inputs come
+    before outputs.
     """
 
     def __init__(self, file: str, findings: ConversionFindings) -> None:
@@ -118,7 +117,7 @@ class ControllerDraft:
         )
 
     def rule(self, text: str, place: Place, spot: PlaceOfWord) -> str:
-        """Return the rule in Lumen's form; empty if it is left out."""
+        """Return the rule in Lumen's form; if it can't be converted, report why and return an empty text."""
         try:
             said = parse_rule(text)
         except RuleSyntaxError as error:
@@ -200,7 +199,10 @@ class ControllerDraft:
 
 
 def _refused(name: str, shape: Mapping[str, Any], count: int) -> str:
-    """Return what Lumen's loader finds wrong with a term; nothing for a formula, whose variables may be read later."""
+    """Return the fault that Lumen's loader finds in a term, empty if none.
+
+    A formula is not checked, since its variables may be read later.
+    """
     if "function" in shape:
         return ""
     document, _ = plain_document("term", {name: dict(shape)})

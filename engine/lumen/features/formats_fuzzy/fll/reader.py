@@ -45,7 +45,7 @@ def read_fll(file: str, content: bytes, title: str) -> tuple[dict[str, Any], lis
 
 
 class _FllReader(FllLineReader):
-    """Reads one file."""
+    """Reads one file of FuzzyLite into a `draft` of the controller."""
 
     def __init__(self, file: str, findings: ConversionFindings) -> None:
         super().__init__(file, findings)

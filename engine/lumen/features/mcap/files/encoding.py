@@ -58,7 +58,7 @@ class MessageEncoder:
         self._channels = {}
 
     def encode(self, message: Message, came: float) -> Iterator[RecordedMessage]:
-        """Yield the items for a message that came at that time [s since 1970, in UTC]."""
+        """Yield the items for a message that arrived at `came` [s since 1970, in UTC]."""
         at, sent = nanoseconds(came), nanoseconds(message.time)
         body, topic = message.body, message.key
         if jpeg := _jpeg(body):

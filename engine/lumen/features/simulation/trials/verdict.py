@@ -127,7 +127,7 @@ class _Judge:
         yield self._found(code, message, hint, self._keys(at, joints))
 
     def _when(self, *, plural: bool = False) -> str:
-        """Return what the robot does, in words."""
+        """Return the robot's activity in words: `plays this motion`, or `lives like this`."""
         if self._case.living:
             return "live like this" if plural else "lives like this"
         return f"{'play' if plural else 'plays'} this {self._case.way}"
