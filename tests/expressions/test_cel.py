@@ -31,7 +31,7 @@ DIFFERENT: dict[str, list[tuple[str, object, object]]] = {
     ],
     "`null in {'a': 1}` is false": [("null in {'a': 1}", False, ERROR), ("[1] in {'a': 1}", False, ERROR)],
     "`!!1`, `--'a'` are errors": [("!!1", ERROR, 1), ("--'a'", ERROR, "a")],
-    "`a ? b ? 1 : 2 : 3` is read": [("true ? false ? 1 : 2 : 3", 2, ERROR)],
+    "`a ? b ? 1 : 2 : 3` is accepted": [("true ? false ? 1 : 2 : 3", 2, ERROR)],
     "no `1u`, bytes, timestamps, durations, types": [
         ("1u + 2u == 3u", ERROR, True),
         ("size(b'abc')", ERROR, 3),
