@@ -58,8 +58,12 @@ def check_language(language: str) -> None:
 
 
 def one_line(text: str, what: str) -> str:
-    """Return a text on one line without invisible characters. Raises UsageError if it is empty or too long."""
-    line = " ".join("".join(sign if sign.isprintable() else " " for sign in text).split())
+    """Return a text on one line, without control characters. Raises UsageError if it is empty or too long.
+
+    Invisible characters that format text stay: Persian and Hindi need those that join letters or keep them apart.
+    """
+    kept = (sign if sign.isprintable() or unicodedata.category(sign) == "Cf" else " " for sign in text)
+    line = " ".join("".join(kept).split())
     if not any(sign.isalnum() for sign in line) or len(line) > MAX_TEXT:
         raise UsageError(f"`{what}` must be a string of 1 to {MAX_TEXT} characters")
     return line

@@ -123,6 +123,14 @@ def test_a_new_wording_changes_nothing_else(tmp_path: Path) -> None:
     assert [str(one) for one in check_files(root, read_files(root))[1]] == []
 
 
+def test_letters_that_invisible_characters_keep_apart_stay_apart(tmp_path: Path) -> None:
+    root = guide(tmp_path)
+    persian = "\u0645\u06cc\u200c\u0631\u0648\u0645"  # "I go": its third character is invisible
+    said = wording(place(root, "Please come in."), en=f" {persian}\t{persian}\n")
+    assert reword(root, "", said, write=True)["written"]
+    assert place(root, f"{persian} {persian}")["texts"]["en"] == f"{persian} {persian}"
+
+
 def test_a_faulty_wording_is_not_written(tmp_path: Path) -> None:
     root = guide(tmp_path)
     hello = place(root, "Hello Budi!")
