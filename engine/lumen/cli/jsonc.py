@@ -10,11 +10,14 @@ _BLANKS = " \t\r\n"
 
 
 class _Item(NamedTuple):
-    """The span of a value in the text, and its key in a map; the key is empty for an entry of a list."""
+    """A value in the text, as an entry of a map or a list."""
 
     key: str
+    """The value's key in a map; empty in a list."""
     begin: int
+    """The offset of the value's first character."""
     end: int
+    """The offset behind the value's last character."""
 
 
 def plain(text: str) -> str:

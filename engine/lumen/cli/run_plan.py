@@ -23,11 +23,14 @@ from lumen.run.setup import Setup
 
 @dataclass(frozen=True, slots=True)
 class RobotRun:
-    """One robot of a run: its project, its home, and the story of its visitor."""
+    """One robot of a run."""
 
     project: Project
+    """The robot's project."""
     directory: RunDirectory
+    """The robot's home."""
     story: Story | None
+    """The story of the robot's visitor; None without one."""
     first: bool = True
     """True if the person at the terminal plays this robot's visitor, and this robot serves the console."""
 

@@ -91,11 +91,14 @@ class JournalHeader(NamedTuple):
 
 
 class JournalContent(NamedTuple):
-    """A file of the journal: its header, its entries, and whether it was readable to its last byte."""
+    """The content of one file of the journal."""
 
     header: JournalHeader
+    """The header of the file."""
     entries: tuple[RecordedEntry, ...]
+    """The entries that could be read."""
     whole: bool
+    """Whether the file was readable to its last byte."""
 
 
 def read_header(line: bytes, name: str) -> JournalHeader:

@@ -9,11 +9,14 @@ from lumen.language.diagnostics import NodePath
 
 @dataclass(frozen=True, slots=True)
 class FunctionExample:
-    """A call that `lumen test` checks: JSON values by argument, and the value that the function must return."""
+    """A call that `lumen test` checks."""
 
     arguments: Mapping[str, Any]
+    """The JSON value of each argument."""
     value: Any
+    """The value that the function must return."""
     where: NodePath = field(default=(), compare=False)
+    """The path of the example in its file."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,11 +8,14 @@ DEFAULT_SPACING = 0.6
 
 @dataclass(frozen=True, slots=True)
 class StartPose:
-    """The pose of a robot in the hall at its start: `x` and `y` [m], and `facing`, its turn to the left [rad]."""
+    """The pose of a robot in the hall at its start."""
 
     x: float = 0.0
+    """The x coordinate in the hall [m]."""
     y: float = 0.0
+    """The y coordinate in the hall [m]."""
     facing: float = 0.0
+    """The turn to the left [rad]."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,11 +12,14 @@ from lumen.language.properties import Property
 
 @dataclass(frozen=True, slots=True)
 class Visitor:
-    """A person in the hall: the position in the robot's frame at its start (x ahead, y left), and the height [m]."""
+    """A person in the hall, in the robot's frame at its start."""
 
     x: float = 1.5
+    """The position ahead of the robot [m]."""
     y: float = 0.0
+    """The position to the left of the robot [m]."""
     height: float = 1.65
+    """The person's height [m]."""
 
 
 @dataclass(frozen=True, slots=True)

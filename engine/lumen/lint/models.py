@@ -82,7 +82,9 @@ class _ModelReader:
 
     draft: ProjectDraft
     seen: set[str] = field(default_factory=set)
+    """The models that have been read."""
     around: list[str] = field(default_factory=list)
+    """The models under way, the outermost first."""
 
     def read(self, name: str) -> list[ModelElement]:
         """Return the elements of a model; empty if it can't be read."""

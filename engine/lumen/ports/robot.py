@@ -88,11 +88,14 @@ class Robot(Protocol):
 
 
 class Sole(NamedTuple):
-    """The position of a foot in the world [m], and the load on it [N]."""
+    """A foot, seen in the world."""
 
     x: float
+    """The x coordinate of the foot [m]."""
     y: float
+    """The y coordinate of the foot [m]."""
     load: float
+    """The load on the foot [N]."""
 
 
 class Strain(NamedTuple):

@@ -18,12 +18,16 @@ class FieldKind(StrEnum):
 
 
 class SchemaField(NamedTuple):
-    """A property of a message's schema, and the range of its numbers if the schema declares one."""
+    """A property of a message's schema."""
 
     name: str
+    """The name of the property."""
     kind: FieldKind
+    """The kind of its values."""
     low: float | None = None
+    """The minimum of a number; None if the schema declares none."""
     high: float | None = None
+    """The maximum of a number; None if the schema declares none."""
 
 
 def message_fields(schema: Mapping[str, Any] | None) -> Mapping[str, SchemaField]:

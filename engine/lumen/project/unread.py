@@ -41,11 +41,14 @@ _PROSE = ("markdown", "mdown", "mkd", "txt")
 
 
 class Unread(NamedTuple):
-    """A file that is not read, the reason, and what to do, in words."""
+    """A file that is not read."""
 
     file: str
+    """The path of the file."""
     message: str
+    """The reason, in words."""
     hint: str
+    """The remedy, in words."""
 
 
 def unread_in(root: Path, models: Collection[str], look: Callable[[Path], object]) -> Iterator[Unread]:

@@ -22,11 +22,14 @@ class Sample(NamedTuple):
 
 
 class Judged(NamedTuple):
-    """The most probable passage for a question: its probability, whether it is right, and whether an answer exists."""
+    """The most probable passage for a question."""
 
     probability: float
+    """The probability of the passage."""
     is_right: bool
+    """Whether the passage answers the question."""
     is_known: bool
+    """Whether an answer exists."""
 
 
 def judged(samples: Sequence[Sample], weights: Weights) -> list[Judged]:

@@ -32,11 +32,14 @@ class Alert(NamedTuple):
 
 
 class Origin(NamedTuple):
-    """The sender of an alert: the exhibition, its robot, and the parts of it in this process."""
+    """The sender of an alert."""
 
     exhibition: str
+    """The name of the exhibition."""
     robot: str
+    """The name of the robot."""
     parts: tuple[str, ...] = ()
+    """The parts of the exhibition in this process."""
 
     def body(self, alert: Alert) -> dict[str, Any]:
         """Return the alert as JSON data. Its `text` is complete by itself, because chat programs show nothing else."""

@@ -73,12 +73,16 @@ class AwaitedAnswer(NamedTuple):
 
 
 class DayMark(NamedTuple):
-    """A mark that a person set: its position, its time [s since 1970], its text, and the person."""
+    """A mark that a person set."""
 
     position: int
+    """The position of the mark's entry."""
     at: float
+    """The time of the mark [s since 1970]."""
     text: str
+    """The text of the mark."""
     by: str
+    """The person who set it."""
 
     def to_json(self) -> dict[str, Any]:
         return {"position": self.position, "at": iso_time(self.at), "text": self.text, "by": self.by}
@@ -86,12 +90,16 @@ class DayMark(NamedTuple):
 
 @dataclass
 class QuietStretch:
-    """Entries between two visits: their positions, and when they were [s since 1970]."""
+    """Entries between two visits."""
 
     first: int
+    """The position of the first entry."""
     last: int
+    """The position of the last entry."""
     began: float
+    """The time of the first entry [s since 1970]."""
     ended: float
+    """The time of the last entry [s since 1970]."""
 
     def to_json(self) -> dict[str, Any]:
         return {"from": self.first, "to": self.last, "began": iso_time(self.began), "ended": iso_time(self.ended)}

@@ -22,12 +22,15 @@ class HearingState(NamedTuple):
 
 
 class HeardSentence(NamedTuple):
-    """A sentence, the states that heard it, and the key of the row that matched; empty if none did."""
+    """A sentence that active states heard."""
 
     text: str
+    """The sentence as it was heard."""
     language: str
     states: tuple[HearingState, ...]
+    """The states that heard it."""
     row: str
+    """The key of the row that matched; empty if none did."""
 
     @property
     def understood(self) -> bool:

@@ -31,13 +31,16 @@ _FOLDED = re.compile(r">[-+]?\s*")
 
 
 class NewWording(NamedTuple):
-    """A sentence by its place, and its new texts by language; `version` is that of the file that the author saw."""
+    """The new texts of a sentence in a file."""
 
     file: str
     around: NodePath
+    """The path of the node that contains the sentence."""
     alternative: int | None
     version: str
+    """The version of the file that the author saw."""
     texts: Mapping[str, str]
+    """The new texts by language."""
 
     @classmethod
     def read(cls, data: Mapping[str, Any]) -> Self:

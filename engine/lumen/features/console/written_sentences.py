@@ -24,13 +24,16 @@ _HOLE = re.compile(r"\{\{.*?\}\}", re.DOTALL)
 
 
 class SaidSentence(NamedTuple):
-    """A sentence of the robot; `file` and `line` are its action, if known, and `passage` is the name of its passage."""
+    """A sentence of the robot."""
 
     text: str
     language: str = ""
     file: str = ""
+    """The file of the action that says it; empty if unknown."""
     line: int = 0
+    """The line of that action; 0 if unknown."""
     passage: str = ""
+    """The name of its passage; empty if it belongs to none."""
 
 
 class WrittenSentence(NamedTuple):

@@ -93,11 +93,14 @@ _HEDGES = {0.5: ("somewhat",), 2.0: ("very",), 4.0: ("very", "very")}
 
 
 class FisLine(NamedTuple):
-    """A line `Key=value` of a section, or a rule (without a key), and its place."""
+    """A line `Key=value` of a section, or a rule."""
 
     key: str
+    """The key; empty for a rule."""
     value: str
+    """The value, or the rule's text."""
     place: Place
+    """The place of the line."""
 
 
 class FisSection(NamedTuple):

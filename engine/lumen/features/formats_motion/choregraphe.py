@@ -79,11 +79,14 @@ Timelines = dict[str, XmlElement]
 
 
 class Flags(NamedTuple):
-    """The first and last frame of a timeline that are played, and the frames per second."""
+    """The part of a timeline that is played."""
 
     first: float
+    """The first frame that is played."""
     last: float
+    """The last frame that is played."""
     fps: float
+    """The number of frames per second."""
 
     def time(self, frame: float) -> float:
         """Return the time of a frame [s]; the first frame is number 1."""

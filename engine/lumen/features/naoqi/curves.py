@@ -38,11 +38,14 @@ class CubicPiece(NamedTuple):
 
 
 class BezierCurves(NamedTuple):
-    """The three arguments of `angleInterpolationBezier`: joints, their times [s], and their control points."""
+    """The three arguments of `angleInterpolationBezier`."""
 
     names: list[str]
+    """The joints."""
     times: list[list[float]]
+    """The times of each joint's keys [s]."""
     controls: list[list[list[Any]]]
+    """The control points of each joint's keys."""
 
 
 def curves(tracks: Iterable[JointTrack]) -> BezierCurves:

@@ -32,14 +32,14 @@ Colour = tuple[int, int, int]
 
 
 class Overlay(NamedTuple):
-    """Letters on a background: an image with opacity, and its place in a picture.
-
-    `pixels` is RGBA, Shape (height, width, 4); `left` and `top` are the position of its upper left corner [px].
-    """
+    """Letters on a background: an image with opacity, and its place in a picture."""
 
     pixels: NDArray[np.uint8]
+    """The image in RGBA, Shape (height, width, 4)."""
     left: int
+    """The distance from the picture's left edge [px]."""
     top: int
+    """The distance from the picture's upper edge [px]."""
 
     def lay_on(self, picture: NDArray[np.uint8], opacity: float = 1.0) -> None:
         """Blend the overlay into a picture, Shape (height, width, 3), in place; `opacity` is from 0 to 1."""

@@ -10,11 +10,14 @@ SILENCE = 300.0
 
 
 class JournalEnd(NamedTuple):
-    """The end of an earlier run's journal: its last visit, the time [s since 1970], and the visitor."""
+    """The end of an earlier run's journal."""
 
     visit: int = 0
+    """The number of the last visit."""
     time: float = 0.0
+    """The time of the last entry [s since 1970]."""
     visitor: str = ""
+    """The name of the last visitor; empty if unknown."""
 
 
 class Visit:

@@ -25,11 +25,14 @@ _FENCE = re.compile(
 
 
 class MarkedWord(NamedTuple):
-    """The word of an example that lint marks; line and columns count from 1, and the last column is exclusive."""
+    """The word of an example that lint marks."""
 
     line: int
+    """The line, from 1."""
     first: int
+    """The first column, from 1."""
     last: int
+    """The column behind the word, from 1."""
 
 
 class Example(NamedTuple):

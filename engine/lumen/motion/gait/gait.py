@@ -61,11 +61,14 @@ _TORSO_TO_MASS = (0.01, 0.0, -0.05)
 
 
 class GaitTick(NamedTuple):
-    """The output of a tick: leg angles [rad], the foot in the air, and the lead of the left foot [m]."""
+    """The output of a tick of the gait."""
 
     angles: Mapping[str, float]
+    """The angles of the legs' joints [rad]."""
     lifted: Side | None
+    """The foot in the air; None if both are on the ground."""
     stride: float
+    """The lead of the left foot [m]."""
 
 
 class Gait:

@@ -24,15 +24,19 @@ Before = tuple[RobotCommand, ...]
 
 @dataclass(frozen=True)
 class Case:
-    """A motion of `folder`, the commands `before` it, and the `command` that plays it.
+    """A motion that is tried in simulation.
 
     A style of life counts as a motion without keyframes.
     """
 
     folder: str
+    """The folder of the motion's file."""
     motion: MotionDefinition
+    """The motion."""
     before: Before
+    """The commands before the motion."""
     command: RobotCommand
+    """The command that plays the motion."""
 
     @property
     def file(self) -> str:
