@@ -39,7 +39,8 @@ class ProgressState(NamedTuple):
 def progress_line(state: ProgressState, now: float, *, at_most: bool = False) -> str:
     """Return the line to show at `now` [s].
 
-    The estimate assumes a constant speed, and counts down between two reports.
+    The estimate assumes a constant speed, and counts down between two reports. With `at_most` it is marked as an upper
+    bound.
     """
     if state.whole <= 0.0:
         return f"{state.name} ({clock_time(now)} so far)"

@@ -9,7 +9,7 @@ from lumen.upkeep.replacing import replace_file
 def write_result(text: str, output: Path | None, *, folders: bool = False) -> None:
     """Write the text to `output` and print that path, or print the text if it is None.
 
-    Raises UsageError if the file can't be written.
+    Missing folders are created if `folders`. Raises UsageError if the file can't be written.
     """
     if output is None:
         print(text, end="")

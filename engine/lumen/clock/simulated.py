@@ -62,7 +62,7 @@ class SimulatedClock:
 
     @property
     def realtime(self) -> float:
-        """The share of its speed that it has kept recently; 1 without a limit."""
+        """The share of its speed that the clock has kept recently; 1 if the speed has no limit."""
         return self._meter.factor if self.speed else 1.0
 
     def now(self) -> float:

@@ -62,7 +62,10 @@ class Actions:
         return tuple(PlacedAction(a, place) for place, item in rows if (a := self.action(item, place, do=do)))
 
     def action(self, data: Mapping[str, Any], where: NodePath, *, do: bool = False) -> Action | None:
-        """Return one action; None if it can't be read. Faults that the file's schema does not show are reported."""
+        """Return one action; None if it can't be read. Faults that the file's schema does not show are reported.
+
+        `do` is true within the `do` of a state, where more verbs are allowed.
+        """
         if "if" in data:
             return self._if(data, where, do=do)
         if len(data) != 1:

@@ -122,7 +122,10 @@ class Approvals:
         self.waiting = tuple(kept)
 
     def decide(self, id: str, by: str, *, go: bool) -> bool:
-        """Let the event with this id happen, or drop it (the oldest for an empty id); return False if there is none."""
+        """Let the event with this id happen if `go`, or else drop it; return False if there is none.
+
+        An empty id means the oldest event.
+        """
         held = next((held for held in self.waiting if id in ("", held.id)), None)
         if held is None:
             return False

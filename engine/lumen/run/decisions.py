@@ -134,7 +134,10 @@ class Decisions:
             self._write()
 
     def approve(self, id: str, by: str, *, go: bool) -> dict[str, Any]:
-        """Release or drop the event with an id (the oldest for an empty id); return the verdict."""
+        """Release the event with an id if `go`, or else drop it; return the verdict.
+
+        An empty id means the oldest event.
+        """
         if self._approvals.decide(id, by, go=go):
             return {"verdict": "done"}
         waiting = ", ".join(f"`{held.id}` ({held.event.name})" for held in self._approvals.waiting)

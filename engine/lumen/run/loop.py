@@ -207,7 +207,10 @@ class BehaviorLoop:
         self._events.append(event)
 
     def approve(self, by: str, *, go: bool) -> str:
-        """Release or drop the event that has waited longest; return why that is impossible, or an empty string."""
+        """Release the event that has waited longest if `go`, or else drop it.
+
+        Return why that is impossible, or an empty string.
+        """
         return "" if self.runtime.approvals.decide("", by, go=go) else NOTHING_WAITS
 
     def set_autonomy(self, level: Autonomy, by: str) -> None:

@@ -284,7 +284,7 @@ class Node:
                 self._begun.append(part)
 
     def _ready(self, part: Part) -> bool:
-        """Return whether the parts that it needs are there; if not, report that once."""
+        """Return whether the parts that a part needs are there; if not, report that once."""
         for need in part.needs:
             if self.presence and need not in self.presence.parts and not self._here(self.presence, need):
                 key = self._project.key_of(COMMAND_ROUTE if need == ROBOT_PART else TRACE_ROUTE)

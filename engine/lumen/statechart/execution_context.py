@@ -227,7 +227,7 @@ class ExecutionContext:
         self.commands = (*self.commands, command)
 
     def start(self, command: BodyCommand, *, awaited: bool = False) -> str:
-        """Start a command and return its id: `d…` for an awaited one, else `c…`."""
+        """Start a command and return its id: `d…` if it is `awaited`, else `c…`."""
         commands, waited, timers = self.counters
         if awaited:
             id = f"d{waited + 1}"

@@ -128,7 +128,7 @@ class PinGuard:
             raise TooFastError(left)
 
     def note(self, address: str, *, right: bool) -> None:
-        """Record an attempt of an address; a right PIN clears its wrong ones."""
+        """Record an attempt of an address; if the PIN was `right`, the wrong ones of that address are cleared."""
         if right:
             self._wrong.pop(address, None)
             return

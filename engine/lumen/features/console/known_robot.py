@@ -158,7 +158,7 @@ class KnownRobot:
         return said if full else self._for_nobody(said)
 
     def block(self, *, full: bool) -> bytes:
-        """Return the object of `to_json` as a server-sent event, encoded once per version."""
+        """Return the object of `to_json` as a server-sent event, encoded once per version and value of `full`."""
         version, block = self._blocks.get(full, (-1, b""))
         if version != self.version:
             block = b"event: now\ndata: " + orjson.dumps(self.to_json(full=full)) + b"\n\n"

@@ -34,7 +34,7 @@ class Addressing:
         self._spans: deque[Span] = deque(maxlen=MAX_SPANS)
 
     def routes(self) -> Mapping[str, Callable[[Any, float], None]]:
-        """Return the routes that it uses, each with a function of a body and its time of arrival [s]."""
+        """Return the routes that open the ears, each with a function of a body and its time of arrival [s]."""
         return {route: take for key, route, take in (("face", "face", self.face), ("touch", "tactile", self.touch))
                 if key in self._said}  # fmt: skip
 

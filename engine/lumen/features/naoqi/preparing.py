@@ -32,9 +32,10 @@ _log = logging.getLogger(__name__)
 
 
 def prepare(session: NaoqiSession, body: Body, *, again: bool) -> None:
-    """Take the robot over: end autonomous life, switch on the reflexes and, after a lost connection, end old commands.
+    """Take the robot over: end autonomous life and switch on the reflexes.
 
-    Raises RobotError if the robot lacks joints of this body, or its NAOqi is too old.
+    After a lost connection (`again`), old commands are ended too. Raises RobotError if the robot lacks joints of this
+    body, or its NAOqi is too old.
     """
     _find(session)
     _check_version(session)

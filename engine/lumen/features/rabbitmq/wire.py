@@ -63,7 +63,10 @@ class WireConnection(TolerantConnection):
         super().__init__(*args, **kwargs)
 
     def send(self, channel: int, exchange: str, key: str, properties: bytes, body: bytes, *, mandatory: bool) -> None:
-        """Send a message. Raises ValueError if a name is too long for AMQP or not valid Unicode."""
+        """Send a message; if `mandatory`, the broker returns it if no queue receives it.
+
+        Raises ValueError if a name is too long for AMQP or not valid Unicode.
+        """
         method = b"".join((_PUBLISH, short_text(exchange), short_text(key), b"\1" if mandatory else b"\0"))
         header = pack(">HHQ", spec.Basic.INDEX, 0, len(body)) + properties
         frames = [_frame(spec.FRAME_METHOD, channel, method), _frame(spec.FRAME_HEADER, channel, header)]

@@ -231,7 +231,7 @@ def _with_texts(schema: Any, languages: Sequence[str]) -> Any:
 
 
 def _text(said: Any, languages: Sequence[str]) -> str:
-    """Return the text in the first of these languages that it has, else in its own first."""
+    """Return the text in the first of these languages that the manifest has, else in its own first language."""
     if not isinstance(said, Mapping):
         return str(said)
     return str(next((said[language] for language in languages if language in said), next(iter(said.values()))))

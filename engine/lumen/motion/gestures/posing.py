@@ -16,7 +16,10 @@ _PEAK = 1.875
 
 
 def gesture_offsets(gesture: Gesture, since: float, *, other_side: bool = False) -> dict[str, float]:
-    """Return the joints' offsets [rad] `since` [s] after the gesture began; empty before and after it."""
+    """Return the joints' offsets [rad] `since` [s] after the gesture began; empty before and after it.
+
+    With `other_side` they are mirrored.
+    """
     if not 0.0 < since < gesture.duration:
         return {}
     found = {}

@@ -41,11 +41,11 @@ class Part:
 
     @property
     def said(self) -> Mapping[str, Any]:
-        """The fields that it adds to the presence of this process."""
+        """The fields that the part adds to the presence of this process."""
         return {}
 
     def begin(self, now: float) -> None:
-        """Called at `now` [s], when the parts that it needs are there."""
+        """Called at `now` [s], when the parts that this one needs are there."""
 
     def recovered(self, found: Resumption | FreshStart) -> None:
         """Called with the way in which the behaviour begins, which depends on the end of the previous run."""
@@ -61,7 +61,7 @@ class Part:
         return inf if self.patient else now
 
     def leap(self, now: float) -> None:
-        """Set its time to `now` [s] after an interval in which nothing happened."""
+        """Set the part's time to `now` [s] after an interval in which nothing happened."""
 
     def use(self, project: Project) -> None:
         """Switch to another bundle."""
@@ -88,4 +88,4 @@ class Part:
         return iter(())
 
     def close(self) -> None:
-        """Close its threads, files and windows."""
+        """Close the part's threads, files and windows."""

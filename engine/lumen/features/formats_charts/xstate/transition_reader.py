@@ -23,7 +23,10 @@ class XStateTransitionReader:
     def under(
         self, state: XStateNode, where: NodePath, data: Any, *, eventless: bool = False, heard: bool = False
     ) -> list[TransitionData]:
-        """Return transitions from a target, an object, or a list of these; a row of `hears` has its key as `hears`."""
+        """Return transitions from a target, an object, or a list of these; a row of `hears` has its key as `hears`.
+
+        If they are `eventless`, those without a guard and a target are reported and left out.
+        """
         rows = [((*where, i), row) for i, row in enumerate(data)] if isinstance(data, list) else [(where, data)]
         found = [self._row(state, place, {} if row is None else row, heard) for place, row in rows]
         kept = [row for row in found if row is not None]
