@@ -30,7 +30,7 @@ class PaceMeter:
 
     @property
     def factor(self) -> float:
-        """The share of its speed that the clock kept; 1 before enough is measured."""
+        """The share of its speed that the clock kept; 1 until enough has been measured."""
         if len(self._noted) < 2:
             return 1.0
         (first, began), (last, ended) = self._noted[0], self._noted[-1]

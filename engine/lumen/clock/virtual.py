@@ -12,7 +12,7 @@ class Sleeper(Protocol):
     """An object that is woken at certain times."""
 
     def next_due(self) -> float | None:
-        """Return when it must be woken next [s], None for never."""
+        """Return the time at which the sleeper must be woken next [s], None for never."""
         ...
 
     def wake(self) -> None:

@@ -32,7 +32,7 @@ class Button:
         return any(text.casefold() == name.strip().casefold() for text in self.label.values())
 
     def replaces(self, other: "Button") -> bool:
-        """Return True if it replaces a button of an outer state: one with the same label or key, or event and data."""
+        """Return True if this button replaces one of an outer state, with the same label or key, or event and data."""
         same = (self.event, self.data) == (other.event, other.data)
         return same or self.label == other.label or bool(self.key and self.key == other.key)
 

@@ -50,11 +50,14 @@ class Camera:
 
 @dataclass(frozen=True, slots=True)
 class Ultrasound:
-    """The range of the sonars: echoes from `minimum` to `maximum` [m] inside a cone of the full angle `cone` [rad]."""
+    """The range of the sonars."""
 
     minimum: float
+    """The distance of the nearest echo [m]."""
     maximum: float
+    """The distance of the farthest echo [m]."""
     cone: float
+    """The full angle of the cone in which there are echoes [rad]."""
 
 
 @dataclass(frozen=True, slots=True)

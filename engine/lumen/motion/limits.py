@@ -17,12 +17,15 @@ COUPLED_TOLERANCE = 1e-3
 
 
 class Excess(NamedTuple):
-    """On the way to `key` the joint would reach `value`, beyond `limit`: [rad], or [rad/s] for a speed."""
+    """A value beyond a joint's limit."""
 
     joint: str
     key: Keyframe
+    """The keyframe on the way to which the joint exceeds its limit."""
     value: float
+    """The angle [rad] or the speed [rad/s] that the joint would reach."""
     limit: float
+    """The limit of that angle or speed."""
 
 
 def beyond_limits(motion: MotionDefinition, body: Body, trajectory: Trajectory | None = None) -> list[Excess]:

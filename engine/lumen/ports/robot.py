@@ -151,7 +151,7 @@ class OtherReading(Protocol):
 
     @property
     def time(self) -> float:
-        """Return when it was measured [s], on the robot's clock."""
+        """Return when the reading was measured [s], on the robot's clock."""
         ...
 
 
@@ -170,5 +170,5 @@ class PerformsVerbs(Protocol):
 
     @property
     def verbs(self) -> Collection[str]:
-        """Return the verbs that it can perform: those of the features installed with it."""
+        """Return the verbs that the robot can perform: those of the features installed with it."""
         ...

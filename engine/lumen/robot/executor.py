@@ -95,7 +95,7 @@ class _Task:
 
 
 class _Ended:
-    """The activity of `Stop`: it waits until these tasks have ended."""
+    """The activity of `Stop`, which waits until these tasks have ended."""
 
     def __init__(self, tasks: Iterable[_Task], alive: list[_Task]) -> None:
         self.tasks, self.alive = tuple(tasks), alive

@@ -22,14 +22,14 @@ TYPES = ("name", "name?", "number", "text")
 
 
 class Slot(NamedTuple):
-    """A slot of a form: `type` is one of TYPES or the name of a list, `name` the key in `heard`.
-
-    `language` is that of the phrase, once it is known.
-    """
+    """A slot of a form."""
 
     type: str
+    """One of TYPES, or the name of a list."""
     name: str
+    """The key in `heard`."""
     language: str = ""
+    """The language of the phrase; empty until it is known."""
 
 
 class Form(NamedTuple):

@@ -136,7 +136,7 @@ TOKEN = "LUMEN_ALERT_TOKEN"
 
 
 class _Stay(urllib.request.HTTPRedirectHandler):
-    """Follows no redirect: it may lead anywhere, and a POST would become a GET."""
+    """Follows no redirect, because it may lead anywhere, and a POST would become a GET."""
 
     def redirect_request(self, *arguments: Any) -> None:
         """Return None: do not redirect."""

@@ -82,7 +82,7 @@ class KnownRobot:
         return found if type(found) is int and found >= 0 else None
 
     def answered(self, said: Mapping[str, Any]) -> None:
-        """Store the status that its exhibition has sent."""
+        """Store the status that the robot's exhibition has sent."""
         self._answered, self._heard = time.monotonic(), iso_time(time.time())
         self._names.add(said.get("visitor"))
         told = {**said, "ahead": self._ahead(said.get("time"))}

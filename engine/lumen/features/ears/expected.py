@@ -46,7 +46,7 @@ class HeardName(NamedTuple):
         return list(dict.fromkeys(_texts(tables)))
 
     def finder(self) -> Finder:
-        """Return a finder of its phrases, which need not be whole clauses."""
+        """Return a finder of the name's phrases, which need not be whole clauses."""
         machine, name = self
         lists = {key: [(phrases_in(entry), entry) for entry in entries] for key, entries in machine.lists.items()}
         return Finder(Speech(machine.phrases, machine.answers), {name: {"": self.phrases()}}, lists=lists)

@@ -41,15 +41,16 @@ _SLOTS = {
 
 
 class Item(NamedTuple):
-    """A proposal: its text replaces the last `replaces` characters before the cursor.
-
-    `detail` is the kind of the proposed name or a short remark, `documentation` a longer description.
-    """
+    """A proposal of the editor."""
 
     text: str
+    """The text that is inserted."""
     detail: str
+    """The kind of the proposed name, or a short remark."""
     replaces: int
+    """The number of characters before the cursor that the text replaces."""
     documentation: str = ""
+    """A longer description."""
 
 
 def complete(analysis: Analysis, file: str, line: int, column: int) -> list[Item]:

@@ -14,16 +14,16 @@ ACTIVE_NOW = "● active now"
 
 
 class Lens(NamedTuple):
-    """A title above a place; `command` may be empty.
-
-    `name` is the story, motion or state, `places` are those of the transitions to it.
-    """
+    """A title above a place in the file."""
 
     place: Place
     title: str
     command: str = ""
+    """The name of the editor's command for a click; empty without one."""
     name: str = ""
+    """The name of the story, motion or state."""
     places: tuple[Place, ...] = ()
+    """The places of the transitions to the state."""
 
 
 def lenses(analysis: Analysis, file: str, active: Collection[str] = ()) -> Iterator[Lens]:

@@ -34,7 +34,7 @@ class RecordingRescue:
             self._thread.start()
 
     def close(self, patience: float = 20.0) -> None:
-        """Wait until it is done, at most `patience` [s]."""
+        """Wait at most `patience` [s] until the rescue is done."""
         if self._thread.started:
             self._thread.join(patience)
 

@@ -15,7 +15,7 @@ class DeviceLink(Protocol):
 
     @property
     def routes(self) -> Collection[str]:
-        """The routes that it carries."""
+        """The routes that the link carries."""
         ...
 
     def begin(self) -> None: ...

@@ -68,7 +68,7 @@ class NaoObservables(legacy_base.WalkerObservables):  # type: ignore[misc]
 
     @property
     def dynamic_sensors(self) -> list[observable.Observable]:
-        """The observables of forces: those under the soles."""
+        """The observables of forces: the sensors under the soles."""
         own = [self.soles] if "soles" in self._observables else []
         return [*own, *self._collect_from_attachments("dynamic_sensors")]
 

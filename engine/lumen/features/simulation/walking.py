@@ -163,10 +163,7 @@ class WalkController:
 
 
 class WalkActivity:
-    """A walk: into its posture, step by step to the place, and to rest.
-
-    A hazard ends it as `cancel` does: with the step in progress and one that brings the feet together.
-    """
+    """A walk: into its posture, step by step to the place, and to rest."""
 
     def __init__(self, walker: WalkController, gait: Gait, now: float) -> None:
         self._walker, self._gait, self._now = walker, gait, now
