@@ -63,13 +63,13 @@ class _Examples(HeardRows):
         """Report the phrases of a row that match another row; if all of them do, report the row instead."""
         if any("." in name for name in row.hears.names):
             return  # phrases of a list's entry, which is not known here
-        hearing, taken = hearing_of(self.machine), dict[object, tuple[SaidPhrase, Taken]]()
+        taken = dict[object, tuple[SaidPhrase, Taken]]()
         others = {n for other in self.by_state[row.state.path] for n in other.hears.names} - {*row.hears.names}
         reached = False
         for example in self.examples(row.hears.names):
             if reached and not example.written:
                 break
-            if (finds := hearing.read(example.text).finds) and others.isdisjoint(finds):
+            if (found := self.names_in(example.text)) and others.isdisjoint(found):
                 reached = True
                 continue
             order = self.order(row.state.path, example.text)
@@ -102,9 +102,11 @@ class _Examples(HeardRows):
         for example in self.examples(row.hears.names) if rivals else ():
             if not example.written:
                 break
-            if rivals.isdisjoint(hearing_of(self.machine).read(example.text).finds) or example.written.path in told:
+            if rivals.isdisjoint(self.names_in(example.text)) or example.written.path in told:
                 continue
-            takers = (self.taker(self.order(path, example.text).first, row) for path in below)
+            found = ((path, self.found_in(path, example.text)) for path in below)
+            there = [path for path, rows in found if rows and self.takes(rows[0], row)]
+            takers = (self.taker(self.order(path, example.text).first, row) for path in there)
             for taker in takers:
                 if taker and own.isdisjoint(self.by_number[taker.number].hears.names):
                     told.add(example.written.path)
@@ -136,8 +138,7 @@ class _Examples(HeardRows):
     def negated_or_asked(self, row: SaidRow) -> None:
         """Report a row with `not` or `asked` that no sentence made of its phrases can match."""
         tried = list(islice(of_row(self.machine, row.hears, {}), MAX_TRIED))
-        orders = (self.order(row.state.path, text) for text in tried)
-        if not tried or any(one.number in row.numbers for o in orders for one in (*o.first, *o.late)):
+        if not tried or any(row in self.found_in(row.state.path, text) for text in tried):
             return
         names = " and ".join(f"`{name}`" for name in row.hears.names)
         if row.hears.way == "asked":
@@ -203,9 +204,13 @@ class _Examples(HeardRows):
 
     def rival(self, name: str, number: int, text: str) -> int | None:
         """Return the row of the table that answers a sentence instead of row `number`; None if no other row does."""
-        hearing = hearing_of(self.machine)
-        find = hearing.best(hearing.read(text), Hears(-1, name, (name,)), set(), {})
-        return find.entry.row if find and find.entry.row != number else None
+        key = name, text
+        if key not in self.tried:
+            hearing = hearing_of(self.machine)
+            find = hearing.best(hearing.read(text), Hears(-1, name, (name,)), set(), {})
+            self.tried[key] = find and find.entry.row
+        row: int | None = self.tried[key]
+        return None if row == number else row
 
     def never(self, row: SaidRow, why: str, hint: str, taker: SaidRow | Transition | None = None) -> None:
         where = taker.path if isinstance(taker, SaidRow) else taker.where if taker else ()

@@ -35,9 +35,13 @@ class _Questions(HeardRows):
         self.names = {path: {n for row in rows for n in row.hears.names} for path, rows in self.by_state.items()}
 
     @cached_property
-    def slots(self) -> set[str]:
+    def slots(self) -> frozenset[str]:
         """The names that have a phrase made only of slots."""
-        return {entry.name for _, entry in hearing_of(self.machine).finder.slots_only}
+        found: frozenset[str] | None = self.tried.get(None)
+        if found is None:
+            found = frozenset(entry.name for _, entry in hearing_of(self.machine).finder.slots_only)
+            self.tried[None] = found
+        return found
 
     def check(self) -> None:
         asking = [row.state for row in self if row.hears.way == "else" and self.asks(row)]
@@ -61,11 +65,13 @@ class _Questions(HeardRows):
         return [path for path in self.by_state if together(self.machine, state, self.machine.states[path])]
 
     def taken(self, text: str, state: State, active: Iterable[str]) -> Iterator[Taken]:
-        """Yield the rows that match a sentence before the `else` of a state."""
-        finds = hearing_of(self.machine).read(text).finds
+        """Yield the rows that match a sentence before the `else` of a state, if a row does not answer it."""
+        names = self.names_in(text)
         for path in active:
-            if self.names[path].isdisjoint(finds) and not (path == state.path and self.slots & self.names[path]):
+            if self.names[path].isdisjoint(names) and not (path == state.path and self.slots & self.names[path]):
                 continue  # a sentence without these phrases can't match
+            if all(self.answers(row) for row in self.found_in(path, text)):
+                continue
             order = self.order(path, text)
             if order.first:
                 yield order.first[0]

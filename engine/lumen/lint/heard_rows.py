@@ -5,7 +5,7 @@ No statechart runs: the rules call `Hearing` directly, state by state.
 
 from collections.abc import Callable, Collection, Hashable, Iterable, Iterator, Mapping, Sequence
 from itertools import islice
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from lumen.language.diagnostics import Diagnostic, NodePath
 from lumen.language.machines import Hears, MachineDefinition, State, StateKind, Transition
@@ -74,6 +74,10 @@ class HeardRows:
         self.report: DocumentReport = draft.report("behaviors", behavior)
         self.by_state = {path: rows for path, state in self.machine.states.items() if (rows := _rows(state))}
         self.by_number = {number: row for row in self for number in row.numbers}
+        machine, heard = self.machine, frozenset(name for row in self for name in row.hears.names)
+        given = machine.phrases, machine.answers, machine.lists, machine.anyhow, heard
+        self.tried: dict[Hashable, Any] = memoize(("tried sentences", behavior), given, dict)
+        """What was found in sentences, which depends on phrases and answers only: most edits change neither."""
 
     def __iter__(self) -> Iterator[SaidRow]:
         return (row for rows in self.by_state.values() for row in rows)
@@ -82,14 +86,32 @@ class HeardRows:
         """Return the rows of the state at that path that a sentence can match, in the order in which they are tried."""
         return hearing_of(self.machine).order(min(self.by_state[path][0].numbers), text, {})
 
+    def names_in(self, text: str) -> frozenset[str]:
+        """Return the names of the phrases and answers that a sentence contains."""
+        found: frozenset[str] | None = self.tried.get(text)
+        if found is None:
+            found = self.tried[text] = frozenset(hearing_of(self.machine).read(text).finds)
+        return found
+
+    def found_in(self, path: str, text: str) -> list[SaidRow]:
+        """Return the rows of the state at that path whose phrases count in a sentence, in the order of `order`."""
+        rows = {row.hears.key: row for row in self.by_state[path]}
+        keys: tuple[str, ...] | None = self.tried.get((*rows, text))
+        if keys is None:
+            order = self.order(path, text)
+            keys = tuple(self.by_number[one.number].hears.key for one in (*order.first, *order.late) if one.find)
+            self.tried[*rows, text] = keys
+        return [rows[key] for key in keys]
+
     def taker(self, taken: Sequence[Taken], row: SaidRow) -> Taken | None:
-        """Return the first match if it is a row without a guard whose effect differs from that of `row`; else None."""
-        for one in taken:
-            other = self.by_number[one.number]
-            if one.number in row.numbers or any(t.guard for t in other.candidates) or _alike(other, row):
-                return None
-            return one
-        return None
+        """Return the first match if its row takes a sentence from `row`; else None."""
+        return taken[0] if taken and self.takes(self.by_number[taken[0].number], row) else None
+
+    def takes(self, other: SaidRow, row: SaidRow) -> bool:
+        """Return whether `other` is a row without a guard whose effect differs from that of `row`."""
+        return other.numbers.isdisjoint(row.numbers) and not (
+            any(t.guard for t in other.candidates) or _alike(other, row)
+        )
 
     def words(self, text: str, find: Find) -> str:
         """Return the words of a sentence in which a phrase was found."""
