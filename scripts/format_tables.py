@@ -10,10 +10,10 @@ from lumen.project.formats.known import FormatTable, Known
 PAGE = Path(__file__).parents[1] / "docs/formats.md"
 HEADING = "## Names that the import reads, lists or ignores\n"
 _INTRODUCTION = """
-`scripts/format_tables.py` generates these tables from the tables of the importers. A row has the names that can occur
-in one place of a file. The import also lists a name that is in no table, and a value that it does not read. To check
-this, `python -m tests.attack --imports 2000` changes files at random and reports each change that is lost without a
-finding.
+`scripts/format_tables.py` generates these tables from the tables of the importers. Each row has the names that can
+occur in one place of a file. The import also lists names that are in no table, and values that it does not read. To
+check this, `python -m tests.attack --imports 2000` changes files at random and reports each change that is lost
+without a finding.
 """
 
 
