@@ -64,7 +64,7 @@ _USUAL = {"conjunction": "minimum", "disjunction": "maximum", "implication": "mi
 
 
 class FclStatement(NamedTuple):
-    """The text before a `;`, and the offset of its beginning."""
+    """The text before a `;`, and the offset at which the text begins."""
 
     text: str
     offset: int
@@ -152,7 +152,7 @@ class _FclReader:
         return self.place(statement.offset, len(lines_of(statement.text)[0]))
 
     def first(self, text: str) -> str:
-        """Return the text before the second function block; report that block."""
+        """Return the text up to a second function block; report that block if there is one."""
         begins = list(re.finditer(r"\bFUNCTION_BLOCK\b", text, re.IGNORECASE))
         if len(begins) < 2:
             return text
@@ -174,7 +174,7 @@ class _FclReader:
                 self.findings.lost(self.place(begin + at, len(word[0])), message, hint)
 
     def tell_cut(self, text: str) -> None:
-        """Report a function block without its end: the file may be cut off."""
+        """Report a missing `END_FUNCTION_BLOCK`: the file may be cut off."""
         if re.search(r"\bFUNCTION_BLOCK\b", text, re.IGNORECASE) and not re.search(
             r"\bEND_FUNCTION_BLOCK\b", text, re.IGNORECASE
         ):

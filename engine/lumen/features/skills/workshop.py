@@ -34,8 +34,8 @@ MAX_CODE_BYTES = 4_000_000
 MAX_TROUBLE = 200
 """The most characters of a trouble in the states of skills."""
 RUNNING, READY, PAUSED, IDLE = "running", "ready", "paused", "idle"
-"""The states of a skill: a call is under way; its program waits for one; it is not started yet after a crash; it is
-started when it is needed."""
+"""The states of a skill: a call is under way; a program waits for a call; the pause after a crash is not over; the
+next call starts a program."""
 
 _CHILD = "import sys; sys.path.append({engine!r}); from lumen.skills import serve; serve()"
 _ENGINE = str(Path(lumen.__file__).parents[1])
@@ -47,7 +47,7 @@ class _Code(NamedTuple):
     stamp: tuple[tuple[str, int, int], ...]
     """The path, time of change [ns] and size [bytes] of each file."""
     hash: str
-    """The SHA-256 hash of the files."""
+    """The SHA-256 hash of the skill's target and of its files."""
     source: str = ""
     """The text of a Python file; empty for other programs."""
 
@@ -62,7 +62,7 @@ class _Bench:
     seen: _Code | None = None
     """The code that was read before the first call."""
     refused: tuple[tuple[str, int, int], ...] = ()
-    """The stamp of code that Python can't read; empty without such code."""
+    """The stamp of the newest code if that has a syntax error, else empty."""
     idle: list[SkillProcess] = field(default_factory=list)
     """The processes that perform no call."""
     busy: list[SkillProcess] = field(default_factory=list)
@@ -76,7 +76,7 @@ class _Bench:
     trouble: str = ""
     """Why the last call failed, or its program was killed; empty after a call that was performed."""
     since: float = field(default_factory=time.time)
-    """When its state last changed [s since 1970]."""
+    """When the skill's state last changed [s since 1970]."""
     state: str = ""
 
     def now(self) -> str:
@@ -123,7 +123,10 @@ class Workshop:
         self.use(project)
 
     def use(self, project: Project) -> None:
-        """Use the skills of this project from now on; calls of other skills are ended."""
+        """Use the skills of this project from now on.
+
+        Calls of removed skills are ended, and idle processes of changed skills are closed.
+        """
         with self._lock:
             self.project = project
             gone = [self._benches.pop(name) for name in [*self._benches] if name not in project.verbs]
@@ -138,7 +141,7 @@ class Workshop:
                 process.kill("the skill was removed")
 
     def warm(self) -> None:
-        """Start the programs of the skills that are `warm`."""
+        """Start the programs of `warm` skills that have no process; report those that fail."""
         for name, bench in list(self._benches.items()):
             if bench.skill.warm and bench.skill.kind != "module" and not (bench.idle or bench.busy):
                 try:
@@ -151,7 +154,10 @@ class Workshop:
                         bench.idle.append(process)
 
     def look(self) -> None:
-        """Check whether code was changed: faults in new code are reported, and the old code stays in use."""
+        """Use code that was changed, and start the programs of `warm` skills.
+
+        If new code has a syntax error, the error is reported, and the old code stays in use.
+        """
         for name, bench in list(self._benches.items()):
             if bench.code and bench.skill.kind != "module":
                 self._refresh(name, bench)
@@ -192,12 +198,14 @@ class Workshop:
             return [one for one in (*bench.idle, *bench.busy) if one.alive] if bench else []
 
     def is_busy(self, name: str) -> bool:
-        """Return whether a call of a skill is under way."""
+        """Return whether a process performs a call of a skill; calls of modules do not count."""
         return name in self._benches and bool(self._benches[name].busy)
 
     @contextmanager
     def lent(self, call: SkillCall) -> Iterator[SkillProcess | ModuleCall]:
-        """Lend a process, or a module, to a call; a process is kept for the next one unless it has ended.
+        """Lend a process, or a module, to a call.
+
+        Afterwards the process is kept for the next call, unless its code is outdated or another process is idle.
 
         Raises RobotError if the skill was removed, has too many calls, or has a program that can't be started.
         """
@@ -234,7 +242,7 @@ class Workshop:
 
     @contextmanager
     def _counted(self, name: str) -> Iterator[None]:
-        """Count a call that a module performs while it is under way."""
+        """Count a module's call in `remote` as long as the call is under way."""
         with self._lock:
             bench = self._benches.get(name)
             if bench:
@@ -254,7 +262,7 @@ class Workshop:
         self._failed(name, reason)
 
     def crashed(self, name: str, reason: str = "") -> None:
-        """Count a program that ended by itself or was killed: the next one is started after a pause."""
+        """Count a program that ended by itself or was killed, and set the pause before the next start."""
         with self._lock:
             if bench := self._benches.get(name):
                 bench.crashes += 1
@@ -262,14 +270,14 @@ class Workshop:
                 bench.again = time.monotonic() + bench.backoff.next()
 
     def worked(self, name: str) -> None:
-        """Record that a call was performed: the next pause is the shortest again."""
+        """Record that a call was performed: clear the trouble, and make the next pause the shortest again."""
         with self._lock:
             if bench := self._benches.get(name):
                 bench.backoff.reset()
                 bench.trouble = ""
 
     def close(self) -> None:
-        """End all programs."""
+        """Kill all programs; programs are lent to no further calls."""
         with self._lock:
             self._closed = True
             processes = [one for bench in self._benches.values() for one in (*bench.idle, *bench.busy)]
@@ -319,13 +327,13 @@ class Workshop:
             self.tell(name, f"uses its new code, {code.hash[:12]}")
 
     def _retire(self, bench: _Bench) -> None:
-        """End the processes that no call uses."""
+        """Close the idle processes, in the background."""
         retired, bench.idle = bench.idle, []
         for process in retired:
             _in_background(process.close)
 
     def _started(self, name: str, bench: _Bench) -> SkillProcess:
-        """Start a program. Raises RobotFailedError if that fails, or if its code can't be loaded."""
+        """Return the process of a new program. Raises RobotFailedError if it can't be started or its code loaded."""
         skill, code = bench.skill, bench.code
         if skill.kind == "command":
             return SkillProcess(name, skill.target, str(self._root), skill.memory, lambda line: self.tell(name, line))
@@ -357,9 +365,10 @@ def _in_background(work: Callable[[], None]) -> None:
 
 
 def _files(root: Path, skill: Skill) -> list[Path]:
-    """Return the project's files in a program.
+    """Return the files of a skill's program.
 
-    Those in the folder of a Python file count, because it may import them.
+    For a Python file, these are all Python files in the same folder, because it may import them. For a command, they
+    are the words that name files of the project.
     """
     if skill.kind == "python":
         own = root / skill.target[0]
@@ -412,7 +421,7 @@ _pretending: list[tuple[str, str]] = []
 
 
 def pretend(project: Project) -> Callable[[], None]:
-    """Note that the calls of this project's robot run no code on purpose; return the function that ends that."""
+    """Note that the calls of this project's robot run no code on purpose; return the function that removes the note."""
     key = (project.root, project.robot)
     _pretending.append(key)
     return lambda: _pretending.remove(key)
