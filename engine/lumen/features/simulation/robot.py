@@ -92,7 +92,7 @@ class AimController:
             self._aims[name] = angle, speed
 
     def advance(self, dt: float, free: Callable[[str], bool]) -> None:
-        """Advance by `dt` [s]; the aim of a joint ends when it is reached or when `free` no longer allows it."""
+        """Advance by `dt` [s]; a joint's aim ends when the goal reaches it, or when `free` is false for the joint."""
         moved = {}
         for name, (angle, speed) in list(self._aims.items()):
             if not free(name):
@@ -120,8 +120,8 @@ class SimulatedRobot(ExecutingRobot):
     """A robot under physics, on its stage; its time passes only in `advance`, in the caller's thread.
 
     `models` is the folder of the MJCF files, `hall` the name of one of them. The same seed and calls give the same run.
-    By default it has the imperfections of a NAO; `stage` bounds its steps. If it shares a `world` and the visitor's
-    `figure` with others, the owner of the world calls `act` and `feel` instead of `advance`. Raises RobotError if the
+    The default imperfections are those of a NAO; `stage` bounds the robot's steps. If robots share a `world` and the
+    visitor's `figure`, the owner of the world calls `act` and `feel` instead of `advance`. Raises RobotError if the
     models are unusable.
     """
 
@@ -207,7 +207,7 @@ class SimulatedRobot(ExecutingRobot):
         return self._skills.awake
 
     def speak_with(self, voice: SpeechPlayback) -> None:
-        """Use this voice for texts; it decides how long each takes."""
+        """Use this voice for texts; the voice decides how long each text takes."""
         self._skills.voice = voice
 
     def sound_with(self, playback: SoundPlayback) -> None:
@@ -226,7 +226,10 @@ class SimulatedRobot(ExecutingRobot):
             self.feel()
 
     def start(self, id: str, command: RobotCommand) -> None:
-        """Begin a command, which `poll` answers with events under `id`; `Aim` and `Live` have no end and no answer."""
+        """Begin a command, whose events `poll` returns under `id`; `Aim` and `Live` cause no such events.
+
+        An `Aim` is ignored if the motors are off or the robot has fallen.
+        """
         if isinstance(command, Live):
             self._life.live(command)
             return
@@ -312,7 +315,7 @@ class SimulatedRobot(ExecutingRobot):
         self._feel_touch({sensor})
 
     def _feel_touch(self, touched: Collection[str] = ()) -> None:
-        """Update the pressed tactile sensors and queue events of changes; `touched` are those that a hand touched."""
+        """Update the pressed sensors and queue events of changes; the visitor causes those of sensors in `touched`."""
         now = self._held | self._tactile.pressed()
         for sensor, before in self._pressed.items():
             if before != (sensor in now):
