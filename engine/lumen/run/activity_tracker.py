@@ -51,7 +51,7 @@ class ActivityTracker(Observer):
     """An observer that records the current activity.
 
     `project`, `snapshot` and `now` return the bundle, the snapshot (None before the start) and the time [s]. A command
-    that waits for another of its kind counts as begun when that one ends.
+    that waits for another of its kind counts as begun when the earlier command ends.
     """
 
     def __init__(
@@ -62,7 +62,7 @@ class ActivityTracker(Observer):
         self.since: dict[str, float] = {}
         """When each active state became active [s], by name."""
         self.heard: Spoken | None = None
-        """The last words of a visitor; None before any."""
+        """The last words that a visitor said; None until a visitor has spoken."""
         self._speaking: dict[str, UnderWay] = {}
         self._moving: dict[str, UnderWay] = {}
         self._others: dict[str, None] = {}
@@ -71,9 +71,10 @@ class ActivityTracker(Observer):
 
     @property
     def saying(self) -> UnderWay | None:
-        """The text that is being said, else None.
+        """The text that is being said; None if there is none.
 
-        A text that is not the behaviour's is dropped after its expected duration, because its end is not reported.
+        A text that does not come from the behaviour is dropped after its expected duration, because its end is not
+        reported.
         """
         for id, said in tuple(self._speaking.items()):
             if said.seconds is None or self._now() - said.since < said.seconds:
@@ -83,7 +84,7 @@ class ActivityTracker(Observer):
 
     @property
     def motion(self) -> UnderWay | None:
-        """The oldest motion under way, else None."""
+        """The oldest motion under way; None if there is none."""
         return next(iter(self._moving.values()), None)
 
     @property
@@ -111,7 +112,7 @@ class ActivityTracker(Observer):
             self.heard = Spoken(said, step.event.at)
 
     def approval(self, how: str, held: HeldEvent, why: str) -> None:
-        """Record a visitor's words as soon as their event starts to wait: they were said, whatever a person decides."""
+        """Record a visitor's words when their event starts to wait: they were said, whether or not it is approved."""
         if how == "waits" and (said := self._words(held.event)):
             self.heard = Spoken(said, held.event.at)
 
@@ -137,7 +138,7 @@ class ActivityTracker(Observer):
             self._end(self._moving, id)
 
     def forget(self, person: PersonName) -> None:
-        """Forget what was said and heard, because it may contain the name."""
+        """Forget the texts said and heard, because they may contain the person's name."""
         self.heard = None
         self._speaking.clear()
 
@@ -149,7 +150,7 @@ class ActivityTracker(Observer):
             self._begin(self._speaking, f"said {message.id}", said)
 
     def _words(self, event: Event) -> str:
-        """Return a visitor's words in an event of the route `speech`, else an empty string."""
+        """Return a visitor's words if the event belongs to the route `speech`, else an empty string."""
         route = self._project().routes.get(SPEECH_ROUTE)
         if route is None or event.name != route.event or not isinstance(event.data, Mapping):
             return ""

@@ -31,10 +31,10 @@ _log = logging.getLogger(__name__)
 
 
 def answer(steps: Sequence[RecordedStep], question: str, what: str, at: str | None = None) -> dict[str, Any]:
-    """Return the answer to a question as JSON data.
+    """Return the answer to `why` or `why-not` as JSON data.
 
-    `question` is the `ask` of `why`; any other value is answered as `why-not`. `at` is an ISO 8601 time: only what
-    happened until then counts. Raises UsageError, with advice, if there is no answer.
+    A `question` other than the `ask` of `why` is answered as `why-not`. `at` is an ISO 8601 time: later steps are
+    ignored. Raises UsageError if there is no answer, for example if `at` is before the first step in memory.
     """
     from lumen.insight.explaining.answers import why, why_not  # thirty modules that only a question needs
 
@@ -70,7 +70,10 @@ def _until(steps: Sequence[RecordedStep], at: str) -> float:
 
 
 def _on_its_day(until: float, first: float, last: float) -> float:
-    """Return the same time of day on the date of the steps, because stories run on a date of their own."""
+    """Return a time later than the steps by a day or more moved to their date, with the same time of day.
+
+    Stories run on a date of their own.
+    """
     if until - last < DAY:
         return until
     until -= (until - last) // DAY * DAY
@@ -108,7 +111,7 @@ class AnsweringThread:
             self._drops.add(message.key, f"{MAX_WAITING_QUESTIONS} questions are already waiting for an answer")
 
     def close(self) -> None:
-        """Answer the questions that wait, and end the thread; wait at most 10 s for that."""
+        """Answer the questions that wait, and end the thread; wait at most 10 s in total."""
         if self._thread.started:
             with suppress(queue.Full):
                 self._waiting.put(None, timeout=5.0)
@@ -135,7 +138,7 @@ def _made(make: AnswerMaker) -> Any:
 
 
 def reply(steps: Sequence[RecordedStep], body: Mapping[str, Any], journal: JournalWriter) -> dict[str, Any]:
-    """Return the answer to a request, a page of the journal, or a refusal with its reason."""
+    """Return the response to a request: an explanation, a page of the journal, or a refusal with its reason."""
     if body["ask"] == JOURNAL.ask:
         return journal_page(journal, int(body.get("from", 0)))
     try:

@@ -1,7 +1,7 @@
 """Events that wait for a person's GO because they would trigger a transition marked `approve: operator`.
 
-The chart does not know about the wait: the pure step function predicts whether an event would trigger one.
-With GO the event happens unchanged, and the journal records it then.
+The chart does not know about the wait: the pure step function predicts whether an event would trigger such a
+transition. With GO, the event happens unchanged, and only then does the journal record it.
 """
 
 from collections.abc import Iterator
@@ -40,13 +40,13 @@ class HeldEvent(NamedTuple):
     """The id of the waiting event, such as `a1`."""
     event: Event
     marked: MarkedTransition
-    """The transition that it would trigger."""
+    """The marked transition that the event would trigger."""
     since: float
     """When the event began to wait [s]."""
 
     @property
     def until(self) -> float:
-        """The time at which it is decided without a person [s]; infinite if it waits for ever."""
+        """The time at which the event is decided without a person [s]; infinite if it waits without limit."""
         within = self.marked.approval.within
         return inf if within is None else self.since + within
 
@@ -65,7 +65,7 @@ class ApprovalWatcher(Protocol):
 class Approvals:
     """The events that are held back while autonomy is `ask`.
 
-    Of several events for one transition only the first is kept to wait; the others are dropped.
+    If several events would trigger the same transition, only the first waits; the others are dropped.
     """
 
     def __init__(self) -> None:
@@ -95,7 +95,7 @@ class Approvals:
         """Return whether an event must wait for GO, and hold it if so.
 
         Answers to commands, delayed events of the behaviour and events that a person has just approved never wait. If
-        another event already waits for the same transition, this one is dropped.
+        another event already waits for the same transition, the new event is dropped, and the result is True.
         """
         if self.autonomy == "alone" or event.sendid or ".command." in event.name:
             return False
@@ -144,7 +144,10 @@ class Approvals:
             self._end(self.waiting[0], FORGOTTEN, None)
 
     def tick(self, now: float) -> list[Event]:
-        """Decide the events whose time has passed; return all events released since the last tick, dated `now` [s]."""
+        """Release or drop the events whose time has passed.
+
+        Return all events released since the last tick, dated `now` [s].
+        """
         for held in [held for held in self.waiting if held.until <= now]:
             go = held.marked.approval.otherwise == "go"
             self._end(held, LATE, Cause("timer", f"approve {held.event.name}") if go else None)
@@ -162,7 +165,7 @@ class Approvals:
         self._tell("waits", held, "")
 
     def _end(self, held: HeldEvent, why: str, cause: Cause | None) -> None:
-        """Stop holding an event: release it with `cause`, or drop it if that is None."""
+        """Stop holding an event: release it with `cause`, or drop it if `cause` is None."""
         self.waiting = tuple(other for other in self.waiting if other is not held)
         if cause:
             self._passing.append(cause)

@@ -11,7 +11,7 @@ from lumen.ports import Bus, Message
 from lumen.run.presence import HERE, PRESENCE_PERIOD, PRESENCE_ROUTE, ROBOT_PART
 
 PRESENCE_TIMEOUT = 4 * PRESENCE_PERIOD
-"""The longest wait for a sign of life [s]: four of their periods."""
+"""The longest wait for a sign of life [s]: four times the period at which they are sent."""
 
 
 MAX_PARTS = 20
@@ -25,7 +25,7 @@ class RobotAttendance:
         self._robot, self._here = project.robot, threading.Event()
         self._modules, self._received = set[str](), threading.Event()
         self.skills: Mapping[str, object] | None = None
-        """The hashes of the skills' code in the robot's process, by skill; None before a message has them."""
+        """The hashes of the code of the robot's skills, by skill; None until a message contains them."""
         with suppress(BusError):  # a missing permission to read is reported elsewhere
             bus.subscribe(project.key_of(PRESENCE_ROUTE), self._hear)
 
@@ -34,7 +34,7 @@ class RobotAttendance:
         return self._here.wait(PRESENCE_TIMEOUT)
 
     def lacking(self, modules: Collection[str]) -> set[str]:
-        """Return the modules among these that show no sign of life within PRESENCE_TIMEOUT; return early if all do."""
+        """Return those `modules` that show no sign of life within PRESENCE_TIMEOUT; return early if none is missing."""
         until = time.monotonic() + PRESENCE_TIMEOUT
         while (left := set(modules) - self._modules) and time.monotonic() < until:
             self._received.wait(0.1)
@@ -42,7 +42,7 @@ class RobotAttendance:
         return left
 
     def await_skills(self) -> Mapping[str, object] | None:
-        """Wait up to PRESENCE_TIMEOUT for `skills`, and return them; None if none arrived."""
+        """Wait up to PRESENCE_TIMEOUT for the hashes in `skills`, and return them; None if none arrived."""
         until = time.monotonic() + PRESENCE_TIMEOUT
         while self.skills is None and time.monotonic() < until:
             self._received.wait(0.1)

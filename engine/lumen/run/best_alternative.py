@@ -1,6 +1,6 @@
-"""The choice among a recogniser's alternative texts: the first that means something now.
+"""The choice among a recogniser's alternative texts: the first that would trigger a transition by phrases.
 
-It is made before the step, so that the journal records the chosen text.
+The choice is made before the step, so that the journal records the chosen text.
 """
 
 from collections.abc import Iterator
@@ -58,7 +58,7 @@ def _means_something(taken: Step) -> bool:
 
 @lru_cache(maxsize=1000)
 def _asks_for_phrases(guard: str) -> bool:
-    """Return whether a guard searches a text for phrases, outside a negation."""
+    """Return whether a guard calls `heard` or `lookup` outside a negation."""
     return _compares(parse_expression(guard))
 
 

@@ -3,11 +3,11 @@
 from lumen.language.machines import Invoke, Transition
 
 MAX_GUARD_LENGTH = 32
-"""The number of characters of a guard that are shown."""
+"""The length from which the text of a guard is shortened [characters]."""
 
 
 def invocation(invoke: Invoke) -> str:
-    """Return `quiz`, or `first: quiz` if the invocation has an id of its own."""
+    """Return the label of an invocation: `quiz`, or `first: quiz` if the invocation has an id of its own."""
     return invoke.behavior if invoke.id == invoke.behavior else f"{invoke.id}: {invoke.behavior}"
 
 

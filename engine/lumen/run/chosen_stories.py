@@ -21,7 +21,7 @@ T = TypeVar("T")
 
 
 def project_of(words: Iterable[str]) -> str | None:
-    """Return the folder of the project of the first story file among these words; None without such a file."""
+    """Return the project folder of the first word that is a path to a story file; None if there is none."""
     for word in words:
         file = Path(os.path.abspath(word))
         if _is_file(word) and len(file.parents) > 2 and (file.parents[2] / MAIN_FILE).is_file():
@@ -32,7 +32,8 @@ def project_of(words: Iterable[str]) -> str | None:
 def stories_of(project: Project, word: str) -> Iterator[Story]:
     """Yield the stories of a project that a word means: `shy`, `shy.yaml`, a path to that file, or `safety_*`.
 
-    Raises UsageError if it means no story. A file outside the project is not one of its stories, whatever its name.
+    Raises UsageError if the word means no story. A file outside the project is never one of its stories, even if the
+    file has a story's name.
     """
     found = _named(project, word, FOLDER, project.stories)
     if not found:

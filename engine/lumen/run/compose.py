@@ -40,7 +40,7 @@ def start(exhibitions: Sequence[Services]) -> None:
 
 
 def claim(exhibitions: Sequence[Services]) -> None:
-    """Wait for objections of other processes with the same robots or roles.
+    """Request the roles of exhibitions, and wait for objections of other processes.
 
     Raises UsageError if another process objects.
     """

@@ -1,4 +1,4 @@
-"""The coverage of a number of runs: states entered, transitions taken, skills used, and what is left."""
+"""The coverage of several runs: the states, transitions and skills that they used, and those that they did not."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -34,11 +34,11 @@ class Coverage:
     """Names of the skills used."""
 
     def of(self, behavior: str) -> Observer:
-        """Return an observer that counts the steps of a run of a behaviour."""
+        """Return an observer that records the steps and skills of one run of a behaviour."""
         return _Watcher(self, behavior)
 
     def note(self, behavior: str, step: Step) -> None:
-        """Count a step of a behaviour, and those of the behaviours that it invoked."""
+        """Record a step of a behaviour, and the steps of invoked behaviours that it contains."""
         self.entered.setdefault(behavior, set()).update(step.entered)
         self.taken.setdefault(behavior, set()).update(t.where for t in step.transitions)
         for id, inner in step.invoked:
@@ -118,7 +118,7 @@ def described(machine: MachineDefinition, transition: Transition) -> str:
 
 
 def trigger(transition: Transition) -> str:
-    """Return in words which event or time a transition waits for."""
+    """Return the event or time that a transition waits for, in words."""
     if transition.hears:
         return f"on `{transition.hears.title}`"
     if transition.timed:

@@ -72,7 +72,10 @@ class ModelSwitch:
         return "off" if self._questions.silenced else "on"
 
     def switch(self, by: str, *, on: bool) -> dict[str, Any]:
-        """Let the model speak, or silence it; return the verdict."""
+        """Let the model speak, or silence it, and journal who did so. Return the verdict.
+
+        The verdict has a `text` if the choice could not be saved.
+        """
         if self.state is None:
             return refusal("this exhibition has no language model: lumen.yaml has no module `answers`")
         self._questions.silence("" if on else by)
@@ -121,7 +124,10 @@ class Decisions:
         approvals.watchers.append(self)
 
     def recover(self, kept: Any, *, resumed: bool) -> None:
-        """If a crashed run is resumed, restore its autonomy, and report the waiting events that were lost with it."""
+        """Restore the autonomy of a crashed run that is resumed, and report its waiting events, which are lost.
+
+        The saved decisions are then replaced by the current ones.
+        """
         match kept:
             case {"autonomy": "ask" | "alone" as level, "waiting": list(waiting)} if resumed:
                 self._approvals.autonomy = level
@@ -155,7 +161,7 @@ class Decisions:
         return {"verdict": "done", "autonomy": level}
 
     def approval(self, how: str, held: HeldEvent, why: str) -> None:
-        """Report and record that an event waits, is released or is dropped."""
+        """Report, record, publish and save that an event waits, is released or is dropped."""
         machine, wanted, _ = held.marked
         targets = ", ".join(machine.states[path].name for path in wanted.targets) or "what it does"
         self._narrator.line("operator", f"{held.event.name} {HOW[how]}, to {targets}" + (f": {why}" if why else ""))

@@ -1,4 +1,4 @@
-"""Tracking and motions that the brain delegates to a motion module if there is one, and else does itself."""
+"""Tracking and motions: a motion module runs them if there is one, otherwise the brain does."""
 
 import logging
 from collections.abc import Callable
@@ -44,7 +44,7 @@ class DelegatedTracking:
         return tuple(self._on)
 
     def reload(self, project: Project) -> None:
-        """Switch to another bundle; controllers that it lacks are switched off."""
+        """Switch to another bundle; controllers that are not in the new bundle are switched off."""
         self._own.reload(project)
         self._project = project
         self._on = {name: None for name in self._on if name in project.controllers}
@@ -61,7 +61,7 @@ class DelegatedTracking:
             self._own.switch(track)
 
     def tick(self, now: float) -> None:
-        """Hand the controllers over if the motion module came, left or restarted, and run them here without it."""
+        """Hand the controllers over if the motion module came, left or restarted; without a module, run them here."""
         helper = self._able()
         if helper != self._helper:
             self._helper = helper
@@ -91,7 +91,7 @@ class DelegatedTracking:
         return self._request({"id": id, "play": name, "bundle": self._project.hash})
 
     def _delegate(self, track: Track) -> None:
-        """Ask the motion module to switch a controller, unless it is to switch on one that moves no joint."""
+        """Ask the motion module to switch a controller; do not switch on a controller that moves no joint."""
         found = self._project.controllers.get(track.controller)
         if not track.on or (found and found.output_bindings):
             self._request({"track": track.controller, "on": track.on})

@@ -22,7 +22,7 @@ from lumen.upkeep.arguments import missing_methods
 
 
 def drivers_in(root: Path) -> dict[str, Path]:
-    """Return the files of drivers/ in a project by their names, without those that begin with `_`."""
+    """Return the files of drivers/ in a project by name, except those whose names begin with `_`."""
     return {file.stem: file for file in sorted((root / DRIVERS_FOLDER).glob("*.py")) if not file.stem.startswith("_")}
 
 
@@ -144,7 +144,7 @@ def _need_methods(driver: str, kind: type) -> None:
 
 
 def _line_of(error: BaseException, kind: type) -> str:
-    """Return the last line of the class's module in an error's traceback, as ` (FILE:LINE)`, else an empty string."""
+    """Return ` (FILE:LINE)` for the last frame of a traceback in the class's module; empty if there is none."""
     lines = [
         f"{frame.f_code.co_filename}:{line}"
         for frame, line in walk_tb(error.__traceback__)

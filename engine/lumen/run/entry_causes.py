@@ -8,7 +8,7 @@ from lumen.statechart import Step
 
 
 def innermost(machine: MachineDefinition, names: Iterable[str]) -> list[str]:
-    """Return the states among these that are not the parent of another of them."""
+    """Return those of the named states that are not the parent of another named state."""
     listed = list(names)
     states = {state.name: state for state in machine.states.values()}
     parents = {states[name].parent for name in listed if name in states}
@@ -16,7 +16,10 @@ def innermost(machine: MachineDefinition, names: Iterable[str]) -> list[str]:
 
 
 def why(step: Step) -> str:
-    """Return the causes of a step's entries: each transition's trigger, with its guard; at most three are named."""
+    """Return the causes of a step's entries: the triggers of transitions, with their guards; at most three are named.
+
+    Without a transition, return the event's name, or `at the start`.
+    """
     causes = list(dict.fromkeys(_cause(t, step) for t in step.transitions if t.targets))
     if not causes:
         return "at the start" if step.event is None else step.event.name

@@ -52,7 +52,7 @@ class Exhibition:
 
     @property
     def player(self) -> StoryPlayer | None:
-        """The player of its story; None if it has no story."""
+        """The player of the exhibition's story; None if it has no story."""
         visitor = self.services.get(VisitorPart)
         return visitor.player if visitor else None
 
@@ -113,7 +113,7 @@ class Exhibition:
         return self.node.tick()
 
     def run(self, seconds: float | None = None) -> float:
-        """Run until it is over, for at most `seconds` [s] (None: no limit); return how long it ran [s]."""
+        """Run until the exhibition is over, for at most `seconds` [s] (None: no limit); return how long it ran [s]."""
         return self.node.run(seconds)
 
     def send(self, route: str, body: Mapping[str, Any]) -> None:
@@ -125,7 +125,10 @@ class Exhibition:
             raise UsageError(f"can't send on `{route}`: {reason}")
 
     def say(self, text: str, language: str = "") -> None:
-        """Make the robot say a text, independently of the behaviour; without a language, in its current one."""
+        """Make the robot say a text, independently of the behaviour.
+
+        Without a language, the robot's current language is used.
+        """
         said = Say(text, language)
         self.robot.robot.start("operator", said)
         self.robot.server.begins(said)
@@ -137,7 +140,7 @@ class Exhibition:
     def resume(self) -> None:
         """Allow motions again and raise `resume` in the behaviour, which may wake the robot.
 
-        If the behaviour does not use this event, the robot stands up.
+        If the behaviour does not use `resume`, the robot stands up.
         """
         self.robot.server.resume(PROGRAM)
 

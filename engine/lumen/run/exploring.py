@@ -33,7 +33,7 @@ class ExploredFinding:
     """The file, line and column of the finding."""
     message: str
     story: str
-    """The YAML of a story that leads to it."""
+    """The YAML of a story that leads to the finding."""
 
 
 @dataclass(frozen=True)
@@ -147,7 +147,7 @@ def _expect(states: tuple[str, ...], before: tuple[str, ...], more: Mapping[str,
 
 
 def _broken(path: tuple[PathStep, ...]) -> Iterator[tuple[str, str]]:
-    """Yield the verbs that must fail on the way, and those that must hang while a timer ends, each with its fault."""
+    """Yield each verb that must fail on the path, or hang while a timer ends, with `fails` or `hangs`."""
     for step in path:
         if step.stimulus and step.stimulus.kind is StimulusKind.FAILED:
             yield _verb(step.stimulus.command), "fails"

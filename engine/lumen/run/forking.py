@@ -1,4 +1,4 @@
-"""`{"ask": "fork"}`: the course of the behaviour from some moment on, with another event or with the saved files."""
+"""`{"ask": "fork"}`: the course of the behaviour from a moment on, with another event or with the saved files."""
 
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
@@ -105,14 +105,14 @@ def _remembered(journal: JournalWriter) -> list[RecordedEntry]:
 
 
 def _knows(entries: Sequence[RecordedEntry], position: int) -> bool:
-    """Return whether the entries have a snapshot at or before that position, from which a replay can begin."""
+    """Return whether the entries have a snapshot at or before `position`, from which a replay can begin."""
     return any(
         isinstance(one, JournalJump) and one.snapshot is not None and one.position <= position for one in entries
     )
 
 
 def _kept(journal: JournalWriter, position: int) -> Sequence[RecordedEntry]:
-    """Return the entries of the file that contains that position. Raises UsageError if no file does."""
+    """Return the entries of the file that contains `position`. Raises UsageError if no file does."""
     files = sorted((header.first, file) for file, header in _files(journal) if header.first <= position)
     if not files:
         raise UsageError(f"entry {position} is no longer in the journal")

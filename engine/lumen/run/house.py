@@ -14,9 +14,9 @@ from lumen.upkeep.garbage import GcScheduler
 class House:
     """Exhibitions by the names of their robots; each has its own time, keys, journal, files and stop.
 
-    They are ticked in the order given, and stay in step if their worlds share a clock. One that is over is closed, and
-    the others continue. The same happens if an error ends one; `lost` is then called with its robot's name and the
-    error. With `together` the house is over as soon as one of them is, as at the end of a story.
+    They are ticked in the order given, and stay in step if their worlds share a clock. If an exhibition is over, it is
+    closed, and the others continue. If an error ends an exhibition, `lost` is also called with the robot's name and the
+    error. With `together`, the house is over as soon as one exhibition is, as at the end of a story.
     """
 
     def __init__(
@@ -38,7 +38,7 @@ class House:
 
     @property
     def over(self) -> bool:
-        """Whether no robot runs any more, or with `together` one has ended."""
+        """Whether no robot runs any more, or with `together`, whether one has ended."""
         return not self._going or (self._together and len(self._going) < len(self.nodes))
 
     def interrupt(self, times: int = 1, *, leave: bool = False) -> None:
@@ -69,7 +69,7 @@ class House:
         return self.now
 
     def run(self, seconds: float | None = None) -> float:
-        """Run until it is over, for at most `seconds` [s] (None: no limit); return how long it ran [s]."""
+        """Run until the house is over, for at most `seconds` [s] (None: no limit); return how long it ran [s]."""
         with closing(GcScheduler()) as garbage:
             return live(self, seconds, garbage)
 

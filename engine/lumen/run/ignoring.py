@@ -11,7 +11,7 @@ from lumen.run.visitor import SPEECH_ROUTE
 from lumen.statechart import Step
 
 _TIME = re.compile(r"(after|at)\.(.+)\.[^.]*")
-"""The event of an `after` or `at`: its key and its time."""
+"""The names of the events of `after` and `at`; the groups are the key and the time."""
 _ENDS = {
     f"{kind}.{what}.": key
     for kind, key in (("done", "onDone"), ("error", "onError"))

@@ -1,4 +1,4 @@
-"""Messages become events: messages from any thread wait here, with their senders, for the next tick."""
+"""The conversion of messages to events: messages from any thread wait, with their senders, for the next tick."""
 
 import logging
 from collections import deque
@@ -20,7 +20,7 @@ _log = logging.getLogger(__name__)
 
 
 class Inbox:
-    """A bounded queue of the events on every route that raises one; a new event drops the oldest if it is full."""
+    """A bounded queue of the events on every route that raises one; if it is full, a new event drops the oldest."""
 
     def __init__(self, bus: Bus) -> None:
         self._bus = bus
@@ -48,7 +48,7 @@ class Inbox:
         return len(self._waiting)
 
     def hear_robots(self, project: Project) -> None:
-        """Subscribe to events from other robots if the project has any, else unsubscribe."""
+        """Subscribe to events from the project's other robots if lumen.yaml has `robots:`, else unsubscribe."""
         self._known = {t.event for state in project.machine.states.values() for t in state.transitions if t.event} - {
             SHARED_EVENT
         }
@@ -75,7 +75,7 @@ class Inbox:
                 _log.warning("a message on %s is ignored: it is not an event that this robot expects", message.key)
 
     def drain(self, now: float) -> list[Event]:
-        """Return everything that arrived, as events at `now` [s], each with its message as the cause."""
+        """Remove and return all waiting events, dated `now` [s], each with its message as the cause."""
         events = []
         self._drops.tell()
         while self._waiting:

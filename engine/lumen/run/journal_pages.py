@@ -47,7 +47,7 @@ def journal_page(writer: JournalWriter, position: int, most: int = MAX_ENTRIES) 
 
 
 def _kept(folder: Path, position: int, most: int) -> tuple[list[bytes], list[PositionedLine]]:
-    """Return the lines of a file before that position, and the lines from it on; unreadable files are left out."""
+    """Return a file's lines before `position`, and up to `most` lines from there on; unreadable files are left out."""
     files = sorted((header.first, file) for file, header in headers(folder) if file.parent == folder)
     begin = max((number for number, (first, _) in enumerate(files) if first <= position), default=0)
     before, found = list[bytes](), list[PositionedLine]()

@@ -51,7 +51,7 @@ class LifeDirector:
         self._seen: tuple[object, object] = (None, None)
 
     def tick(self, project: Project, snapshot: Snapshot, now: float) -> None:
-        """Send the robot its style if the style or a file has changed, and again every REMIND_PERIOD."""
+        """Send the robot its style when it changes; a style that is not still is sent again every REMIND_PERIOD."""
         if self._seen[0] is not project or self._seen[1] != snapshot.configuration:
             self._seen = project, snapshot.configuration
             self._wanted = _wanted(project, snapshot)
@@ -75,7 +75,7 @@ _FROM_THE_START = ("lost.command.", "brain.lost")
 
 
 def caused(event: Event) -> Event:
-    """Return the event with a cause; an event that has one is returned unchanged."""
+    """Return the event with a cause; an event that already has a cause is returned unchanged."""
     return event if event.cause else event._replace(cause=_cause(event))
 
 
@@ -101,7 +101,7 @@ CAUSES = ("stop", "brain.lost", "robot.lost")
 
 
 class Observer:
-    """A base class of observers, which are called for everything that happens and change nothing."""
+    """The base class of observers, which are notified of the events of a run and must not change it."""
 
     def stepped(self, step: Step) -> None:
         """Called after each step of the behaviour."""
@@ -257,7 +257,10 @@ class BehaviorLoop:
         self._perform(self.runtime.take(step), self._last)
 
     def quiet_until(self, now: float) -> float:
-        """Return the time until which nothing happens without an outside input [s]; `now` if something may at once."""
+        """Return the time until which nothing happens without an outside input [s].
+
+        Return `now` if something may happen at once.
+        """
         pending = self._events or self.performer.events or not (self.inbox.empty and self.performer.questions.empty)
         pending = pending or not self.board.empty
         if pending or self.tracking.on or self.performer.navigator.busy:
@@ -318,7 +321,7 @@ class BehaviorLoop:
         return local_time(moment(now.epoch, self.clock.now()), now.timezone).date()
 
     def _track(self, track: Track) -> None:
-        """Switch a controller on or off: joints in the tracking service, the rest in `regulation`."""
+        """Switch a controller on or off, in the tracking service (joints) and in `regulation` (other outputs)."""
         self.tracking.switch(track)
         self.regulation.switch(track)
 
@@ -389,7 +392,7 @@ class BehaviorLoop:
         self._note_rest(command)
 
     def _lose(self, seconds: float) -> None:
-        """Raise `brain.lost`, and remember when, so that the robot's own report of it is ignored."""
+        """Raise `brain.lost`, and remember the time, so that the robot's own report of the same gap is ignored."""
         self._lost_at = self.clock.now()
         self._events.append(Event("brain.lost", {"seconds": seconds}, self._lost_at))
 
@@ -404,7 +407,7 @@ class BehaviorLoop:
                 self.rests = False
 
     def _recover(self, error: Exception, now: float) -> None:
-        """Let a rescuer switch the bundle after a fault, and perform its commands; if none does, raise the fault."""
+        """Let a rescuer switch the bundle after a fault, and perform the switch's commands; else raise the fault."""
         commands = self._rescued(error)
         if commands is None:
             raise error
@@ -414,8 +417,8 @@ class BehaviorLoop:
 def _ours(event: Event) -> bool:
     """Return whether an event is for the behaviour.
 
-    Of the answers, only those to its own commands are (c1, d2@quiz, …). Cues of a motion are for the loop, and
-    recordings for modules.
+    An answer is for the behaviour if it belongs to one of the behaviour's commands (c1, d2@quiz, …). Cues of a motion
+    are for the loop, and recordings for modules.
     """
     if event.name in (CUE, RECORDED):
         return False

@@ -33,9 +33,9 @@ _log = logging.getLogger(__name__)
 class Module:
     """A handler of the messages on the routes of `hears`, one at a time, in order, on its own thread.
 
-    If a handler raises ModuleError, its message is lost. Each reason is then reported once until the module works
-    again: to `tell`, and on the route `trouble` for operators of other processes. Of a route that keeps one message,
-    only the newest waits. Subclasses set `name` and override `hears`; call `begin` to start the module.
+    If a handler raises an error, its message is lost. Each reason is then reported once until the module works again:
+    to `tell`, and on the route `trouble` for operators of other processes. Of a route that keeps one message, only the
+    newest waits. Subclasses set `name` and override `hears`; call `begin` to start the module.
     """
 
     name = ""
@@ -61,7 +61,7 @@ class Module:
     def make(cls, project: Project, bus: Bus, tell: Callable[[str], None], folder: Path | None) -> Self:
         """Return a module for an exhibition, not yet begun; `folder` is for its files, None if nothing may be saved.
 
-        Raises ModuleError if it lacks something that it needs.
+        Raises ModuleError if a requirement of the module is missing.
         """
         return cls(project, bus, tell)
 
@@ -71,7 +71,7 @@ class Module:
 
     @property
     def refused(self) -> int:
-        """The number of messages that it refused; 0 in modules that do not count them."""
+        """The number of messages that the module refused; 0 in modules that do not count them."""
         return 0
 
     @property
@@ -80,7 +80,7 @@ class Module:
         return self.project.modules.get(self.name, ModuleSettings())
 
     def begin(self) -> None:
-        """Subscribe to its routes, and start the thread."""
+        """Subscribe to the module's routes, and start its thread."""
         self._listen()
         self._thread.start()
 
@@ -173,7 +173,7 @@ class Module:
         self.end()
 
     def end(self) -> None:
-        """Close the resources of its thread; called on that thread."""
+        """Close the resources of the module's thread; called on that thread when it ends."""
 
     def idle(self) -> float | None:
         """Do idle work; called on the module's thread when no message waits.

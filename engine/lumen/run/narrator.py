@@ -43,7 +43,7 @@ class VisitorWatcher(Protocol):
 
 
 class Narrator(Observer):
-    """An observer that counts what happens, and describes it line by line.
+    """An observer that counts the events of a run, and describes them line by line.
 
     Subclasses that show the lines override `line` and `note`. `now` returns the time [s], `machine` the running
     machine.

@@ -1,4 +1,4 @@
-"""Walks to places by name: each is a series of the robot's ordinary walks, replanned from where the last one ended."""
+"""Walks to places by name: each is a series of ordinary walks, planned anew from where the previous walk ended."""
 
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
@@ -31,9 +31,9 @@ class _Way:
     id: str
     name: str
     since: float
-    """When the last of its walks ended, or it became the first in the queue [s]."""
+    """When the last single walk ended, or this walk became the first in the queue [s]."""
     target: HallPlace | None = None
-    """The place as its walks are planned; None before the first walk and after the place was moved."""
+    """The place for which the single walks are planned; None before the first one and after the place was moved."""
     leg: str = ""
     """The id of the robot's current walk; empty between two walks."""
     walked: int = 0
@@ -76,16 +76,16 @@ class Navigator:
         return bool(meant)
 
     def stop(self) -> None:
-        """Cancel all walks to places, because something stops the robot."""
+        """Cancel all walks to places, because the robot is stopped."""
         for way in self._ways:
             way.cancelled = True
 
     def renew(self) -> None:
-        """Report the robot's place again, for another behaviour or snapshot."""
+        """Report a difference between the robot's real and assumed place again, for another behaviour or snapshot."""
         self._told = None
 
     def tick(self, project: Project, standing: str, answers: Iterable[Event], now: float) -> list[Event]:
-        """Return the events of this tick; a walk to a place is answered instead of its single walks.
+        """Return the events of this tick, with one answer for a walk to a place instead of one for each single walk.
 
         `standing` is the place where the behaviour believes the robot to be.
         """
@@ -116,7 +116,7 @@ class Navigator:
         return next((way for way in self._ways if separator and way.leg and way.leg == id), None)
 
     def _answered(self, way: _Way, event: Event, now: float) -> Iterator[Event]:
-        """Handle the end of a single walk, and yield the answer of the whole way if that ends too."""
+        """Handle the end of a single walk, and yield the answer of the walk to the place if that ends too."""
         way.leg, way.since, way.fresh = "", now, 0
         kind = event.name.partition(".")[0]
         if kind == "cancelled" and way.target is None and not way.cancelled:
@@ -175,7 +175,7 @@ class Navigator:
     def _look_around(self, project: Project, standing: str, now: float) -> Iterator[Event]:
         """Yield an event if the robot is at another place than the behaviour believes.
 
-        Places that it passes on the way to another place do not count.
+        Places that the robot passes on the way to another place do not count.
         """
         if now < self._look:
             return

@@ -51,9 +51,9 @@ def write_saying(root: Path, saying: Saying, robot: str = "") -> Path:
 
 
 def with_saying(content: bytes, saying: Saying) -> bytes:
-    """Return the content of a file of sayings with one more; unchanged if it already has the saying.
+    """Return the content of a file of sayings with `saying` added; unchanged if the file already has it.
 
-    Raises UsageError if the way it is written leaves no place to add one.
+    Raises UsageError if the saying can't be added because of the way the file is written.
     """
     keys = (saying.behavior, saying.state, saying.row, saying.language)
     if _is_blank(content):

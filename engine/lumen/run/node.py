@@ -75,7 +75,7 @@ class NodeTime:
     """How time passes in a process."""
 
     speed: float | None = None
-    """The multiple of real time that other processes must share; None if it does not matter."""
+    """The speed that other processes must have too, as a multiple of real time; None if any speed is allowed."""
     leaps: bool = False
     """Whether ticks in which nothing happens are skipped."""
     paced: Callable[[float], None] = lambda _: None
@@ -127,7 +127,7 @@ class Node:
 
     @property
     def over(self) -> bool:
-        """Whether one of its parts is over, or it was interrupted twice."""
+        """Whether a part is over, or the process was interrupted twice."""
         return self._interrupts > 1 or any(part.over for part in self._begun)
 
     @property
@@ -178,7 +178,7 @@ class Node:
         self._begin(self.now)
 
     def run(self, period: float | None = None) -> float:
-        """Tick until it is over, for at most `period` [s] (None: no limit); return how long it ran [s]."""
+        """Tick until the node is over, for at most `period` [s] (None: no limit); return how long it ran [s]."""
         with closing(GcScheduler()) as garbage:
             return live(self, period, garbage)
 
@@ -226,7 +226,10 @@ class Node:
         return until - self.now
 
     def doze(self, rest: float) -> int:
-        """Sleep until woken, for at most the lesser of `rest` and NAP, if the clock can; return the ticks slept."""
+        """Sleep until woken, for at most the lesser of `rest` and NAP [s].
+
+        Return the number of ticks slept; 0 if the clock can't doze.
+        """
         if self._dozes is None or rest < 2 * TICK_PERIOD:
             return 0
         return int((self._dozes.doze(self.now + min(rest, NAP) - TICK_PERIOD) - self.now) / TICK_PERIOD + ROUNDING)
@@ -252,7 +255,7 @@ class Node:
             part.use(project)
 
     def close(self) -> None:
-        """Close all parts, even if one raises an error; then the bus."""
+        """Close all parts, then the presence and the bus, even if one of them raises an error."""
         with ExitStack() as stack:
             stack.callback(self.bus.close)
             if self.presence:

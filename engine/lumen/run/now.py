@@ -21,7 +21,7 @@ Status = dict[str, Any]
 
 
 class PresentMoment(NamedTuple):
-    """The state of an exhibition between two ticks; `status` adds the rest, on any thread."""
+    """The state of an exhibition between two ticks; `status` returns the rest of the data, on any thread."""
 
     project: Project
     snapshot: Snapshot
@@ -37,7 +37,7 @@ class PresentMoment(NamedTuple):
     motion: UnderWay | None
     """The motion under way; None if there is none."""
     heard: Spoken | None
-    """The visitor's last words; None before any."""
+    """The visitor's last words; None until a visitor has spoken."""
     waiting: tuple[HeldEvent, ...]
     """The events that wait for GO."""
     autonomy: Autonomy

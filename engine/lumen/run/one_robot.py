@@ -12,7 +12,7 @@ from lumen.project.settings import Settings
 def one_robot(root: Path, name: str = "") -> str:
     """Return the name of a robot's folder in the project's home; empty if lumen.yaml has one `robot:`.
 
-    Without a name it is that of the first robot. Raises UsageError for an unknown name.
+    Without a name, the first robot is chosen. Raises UsageError for an unknown name.
     """
     settings = main_settings(root) or Settings()
     robots = list(settings.robots)
@@ -22,7 +22,7 @@ def one_robot(root: Path, name: str = "") -> str:
 
 
 def robots_of(root: Path, names: str | None) -> Sequence[str]:
-    """Return the robots in a comma-separated list of names, in its order; all of `robots:` if `names` is None.
+    """Return the robots in a comma-separated list of names, in the list's order; all of `robots:` if `names` is None.
 
     The result is empty if lumen.yaml has one `robot:`. Raises UsageError for an unknown name or an empty list.
     """

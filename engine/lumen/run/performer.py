@@ -78,7 +78,7 @@ class Performer:
         return ""
 
     def perform(self, project: Project, command: Command, now: float, step: int = 0) -> None:
-        """Begin a command of the step with this number; the messages that it publishes name the step as their cause."""
+        """Begin a command; messages that the command publishes name the step of this number as their cause."""
         match command:
             case Start(id, Ask() as asked):
                 origin = MessageOrigin(cause=f"step {step}" if step else "")

@@ -25,7 +25,7 @@ class Plan:
     bus: str | Bus = "memory://"
     """The address of the bus, or an open bus, which is closed with the exhibition."""
     story: Story | None = None
-    """The story that its visitor plays; None for none."""
+    """The story that the visitor plays; None without a story."""
     narrator: Narrator | None = None
     """Prints what happens; None for a silent run."""
     roles: tuple[str, ...] = ()
@@ -62,7 +62,7 @@ class Plan:
 
     @property
     def time(self) -> Clock:
-        """The robot's clock, else the plan's; raises ValueError without either."""
+        """The robot's clock, else the plan's. Raises ValueError if there is neither."""
         clock = self.setup.clock if self.setup else self.clock
         if clock is None:
             raise ValueError("a plan needs a robot or a clock")

@@ -25,7 +25,7 @@ ROBOT_PART, BRAIN, MOTION, VISITOR = "robot", "brain", "motion", "visitor"
 PRESENCE_PERIOD = 0.5
 """The time between two signs of life [s]."""
 LOST_AFTER = 4.0
-"""The silence after which a process is lost [s]; one that hangs for 3 s is not."""
+"""The silence after which a process is lost [s]; a process that hangs for 3 s is not."""
 PRESENCE_TTL = 2.0
 """The time to live of a sign of life on the bus [s]."""
 MAX_PEERS = 100
@@ -67,7 +67,7 @@ class Peer:
     session: str
     """The id of the process, new at each start."""
     parts: tuple[str, ...]
-    """The parts that it has."""
+    """The parts that the process has."""
     since: float
     """When the process was first noticed [s, monotonic]."""
     heard: float
@@ -75,7 +75,7 @@ class Peer:
     state: str
     """`asks`, `here` or `leaves`."""
     said: Mapping[str, Any]
-    """The body of its last sign of life."""
+    """The body of the last sign of life."""
 
 
 class Presence:
@@ -175,7 +175,7 @@ class Presence:
         return self._changes(now)
 
     def _excuse(self, now: float) -> None:
-        """Extend the others' signs of life by the time in which this process did not read them."""
+        """Move the others' last signs of life forward by a pause of this process, in which it did not read them."""
         stood, self._ticked = now - self._ticked, now
         if stood > PRESENCE_PERIOD:
             for peer in self._peers.values():

@@ -40,7 +40,7 @@ _log = logging.getLogger(__name__)
 
 
 class OpenQuestion(NamedTuple):
-    """A question that was sent to the module."""
+    """A question that was sent to the module `answers`."""
 
     offers: Mapping[str, Any]
     """The events that the answer may raise, with the schemas of their data."""
@@ -63,9 +63,9 @@ class Questions:
         self._bus, self._today, self._offers = bus, today, offers
         self.visit, self._home = 0, ""
         self.silenced = ""
-        """The person who silenced the module, else empty.
+        """The person who silenced the language model; empty if the model may speak.
 
-        While it is set, no questions are sent, and answers are ignored.
+        While it is silenced, no questions are sent, and answers are ignored.
         """
         self._fillers: Mapping[str, str] = {}
         self._patience = FILLER_AFTER
@@ -78,7 +78,7 @@ class Questions:
         self._known: tuple[object, ...] = ()
 
     def listen(self, project: Project) -> None:
-        """Subscribe to the answers of the project's module `answers`, if it has one."""
+        """Subscribe to the answers of the project's module `answers`, and read its filler; without it, unsubscribe."""
         options = project.modules[ANSWERS].options if ANSWERS in project.modules else {}
         filler = options.get("filler") or {}
         self._fillers, self._patience = filler.get("say") or {}, float(filler.get("after", FILLER_AFTER))
@@ -90,7 +90,7 @@ class Questions:
             undo()
 
     def stepped(self, step: Step) -> None:
-        """Count the visits: a step that enters the home state ends one."""
+        """Count the visits: a step that enters the home state ends a visit."""
         self.visit += bool(self._home) and self._home in step.entered
 
     def ask(self, project: Project, id: str, asked: Ask, now: float, origin: MessageOrigin) -> list[Event]:
@@ -134,11 +134,14 @@ class Questions:
 
     @property
     def empty(self) -> bool:
-        """Whether no answer waits, and no filler is due later."""
+        """Whether no answer waits, and no filler will become due."""
         return not self._received and not any(one.filler_at < inf for one in self._open.values())
 
     def drain(self, now: float) -> list[Event]:
-        """Return answers and fillers to open questions, each answer caused by its message; drop all other answers."""
+        """Return answers and fillers to open questions, each answer caused by its message; drop all other answers.
+
+        While the language model is silenced, every open question ends with an error.
+        """
         events = []
         while self._received:
             message, at = self._received.popleft()

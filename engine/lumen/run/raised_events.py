@@ -95,7 +95,7 @@ class RaisedEvents(Observer):
         self._data = EventData(loop.project)
 
     def happen(self, message: Message, now: float) -> None:
-        """Raise the event that a message holds, or that of the button that it names, in this tick; or refuse it."""
+        """Raise the event in a message, or of the button that it names, in this tick; or refuse the request."""
         body = message.body
         if body["ask"] == PRESS.ask:
             loop = self._loop

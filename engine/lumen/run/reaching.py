@@ -27,7 +27,7 @@ class Reached(NamedTuple):
     command: str
     """The key on which the robot receives commands."""
     stop: str
-    """The key on which it receives stops."""
+    """The key on which the robot receives stops."""
     broker: str = ""
     """The address of the broker; empty for an embedded bus."""
     home: str = ""
@@ -35,10 +35,10 @@ class Reached(NamedTuple):
 
 
 def reach_exhibition(project: str | None, bus: str | None, robot: str = "") -> Reached:
-    """Connect to the exhibition of a project (default: the one here or above); `bus` is its bus's address, if known.
+    """Connect to the exhibition of a project, by default the project here or above; `bus` is the address, if known.
 
-    Of several robots it is that of `robot`; by default the first one that runs here, else the first. Raises UsageError
-    for an unknown robot, BusError, with advice, if no exhibition is found.
+    Of several robots, the exhibition is that of `robot`; by default that of the first robot that runs here, else of the
+    first robot. Raises UsageError for an unknown robot, BusError, with advice, if no exhibition is found.
     """
     root = running_project(project)
     wanted = one_robot(root, robot)
@@ -70,8 +70,8 @@ def robots_meant(project: str | None) -> list[str]:
 def _running(root: Path, robot: str = "") -> dict[str, Any] | None:
     """Return the data that the project's running exhibition on this machine has published; None if none runs.
 
-    Of several robots it is that of `robot`, if one is given. An address left by a killed run is ignored, because no
-    process holds its home any more.
+    Of several robots, the data is that of `robot`, if one is given. An address left by a killed run is ignored, because
+    no process holds its home any more.
     """
     for home in (*homes_of(root), *homes()):
         found = _said(home)
@@ -81,7 +81,7 @@ def _running(root: Path, robot: str = "") -> dict[str, Any] | None:
 
 
 def runs_here(root: Path) -> bool:
-    """Return whether an exhibition of the project in that folder is running on this machine."""
+    """Return whether an exhibition of the project in `root` is running on this machine."""
     return _running(root) is not None
 
 

@@ -36,7 +36,7 @@ class Rehearsal:
     took: float
     """The duration on this machine [s]."""
     failed: StoryFailure | None = None
-    """The way in which it failed; None if it did not."""
+    """The failure of the story; None if it did not fail."""
     place: Place | None = None
     """The place of the failed step in the story's file; None if it did not fail."""
     trace: tuple[tuple[float, str, str], ...] = ()

@@ -19,11 +19,11 @@ _log = logging.getLogger(__name__)
 
 JOURNAL_FILE = "journal.jsonl"
 MAX_JOURNAL_BYTES = 1_000_000
-"""The size after which a new file is begun [bytes]; only the file before it is kept."""
+"""The size above which a new file is begun [bytes]; only the file before it is kept."""
 
 
 class Journal:
-    """A writer of entries to `journal.jsonl` in a folder; without a folder they are dropped.
+    """A writer of entries to `journal.jsonl` in a folder; without a folder, entries are dropped.
 
     A line is written as a whole. If writing fails, as on a full disk, the entry is lost without an error.
     """

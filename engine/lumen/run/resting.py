@@ -8,18 +8,21 @@ from lumen.ports import Bus
 from lumen.run.reload.requests import COMMAND, command_key
 
 STOP_TIMEOUT = 10.0
-"""The longest time that the robot needs to rest, even with a foot in the air [s]."""
+"""The longest time that the robot may need to rest, even with a foot in the air [s]."""
 TAKEN = "command finished"
 """A robot's answer after it has executed a command."""
 
 
 def rest_body(by: str) -> dict[str, Any]:
-    """Return the command to rest on behalf of `by`, for the robot's key `stop`; the robot notifies the behaviour."""
+    """Return the command to rest on behalf of `by`, to be sent on the robot's key `stop`.
+
+    The robot notifies the behaviour.
+    """
     return {"type": "motion", "method": "rest", "parameter": {"by": by}}
 
 
 def resume_body(by: str) -> dict[str, Any]:
-    """Return the command that lets a stopped robot move again, for the same key."""
+    """Return the command that lets a stopped robot move again, to be sent on the robot's key `stop`."""
     return {"type": "motion", "method": "resume", "parameter": {"by": by}}
 
 

@@ -21,7 +21,7 @@ class FreshStart(NamedTuple):
     why: str = ""
     """The reason; empty if there is nothing to report."""
     rests: bool = False
-    """Whether the robot was at rest, and stays so until a person lets it move."""
+    """Whether the robot was at rest, and stays at rest until a person lets it move."""
     crashed: bool = False
     """Whether the previous run ended unexpectedly."""
 
@@ -42,10 +42,10 @@ class Resumption(NamedTuple):
     notes: tuple[str, ...] = ()
     """Sentences about values or states that were lost."""
     told: bool = False
-    """Whether the operating system had ordered the end."""
+    """Whether the operating system had ordered the previous run to end."""
 
     def answers(self, now: float) -> list[Event]:
-        """Return an answer for each unfinished command, which the robot has lost."""
+        """Return an event `lost.command.ID` at `now` [s] for each unfinished command, which the robot has lost."""
         return [Event(f"lost.command.{id}", {"reason": LOST_COMMAND_REASON}, now) for id in self.lost]
 
 
@@ -54,7 +54,7 @@ def resume(
 ) -> Resumption | Refusal:
     """Return how `new` continues from a snapshot of `old` at time 0 of a new clock, or why it can't.
 
-    The engine was away for `away` [s], during which timers ran on; before that, the snapshot had not changed for
+    The engine was away for `away` [s], during which timers continued; before that, the snapshot had not changed for
     `unchanged` [s]. `tracking` are the controllers that were on. Newer files are applied like a reload that does not
     wait, because all actions under way have ended anyway.
     """
@@ -67,7 +67,7 @@ def resume(
 
 
 def anew(project: Project, snapshot: Snapshot, now: float) -> MigrationPlan:
-    """Return how a project begins anew at `now` [s]; context values of the snapshot stay if they still fit."""
+    """Return a plan for a project to begin anew at `now` [s]; context values of the snapshot stay if they still fit."""
     checks = type_checks(project.machine)
     kept = {key: value for key, value in snapshot.context.items() if key in checks and fits(value, checks[key])}
     language = snapshot.language if snapshot.language in project.languages else project.languages[0]

@@ -47,7 +47,7 @@ class RunFailure:
 
 
 class Failures:
-    """Sends people reports of errors that end a run, or one robot of it; `close` waits until they are sent.
+    """Sends people reports of errors that end a run, or one robot of it; `close` waits until all are sent.
 
     A UsageError is only for the person at the terminal. `tell` is called with the reason if a report can't be sent.
     Without `wanted` nothing is sent, as for stories.
@@ -148,7 +148,7 @@ def started(
 
 
 def _why(error: LumenError) -> str:
-    """Return the place and the code of the first error in files, without any of their content."""
+    """Return an error's message; for errors in files only the place and the code of the first one, without content."""
     if not isinstance(error, ProjectError):
         return str(error)
     found = [diagnostic for diagnostic in error.diagnostics if diagnostic.severity is Severity.ERROR]

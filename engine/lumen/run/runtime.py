@@ -28,7 +28,10 @@ class Emission(NamedTuple):
 
 
 Rescue = Callable[[Exception], Sequence[Command] | None]
-"""Called after a failure: switches to another bundle; returns the commands of the switch, else None."""
+"""A function that is called after a failure to switch to another bundle.
+
+It returns the commands of the switch, or None if it did not switch.
+"""
 
 
 class InputRecorder(Protocol):
@@ -104,7 +107,7 @@ class Runtime:
         return [command for emission in self.advance(now, events) for command in emission.commands]
 
     def advance(self, now: float, events: Iterable[Event] = ()) -> list[Emission]:
-        """Do the same as `tick`, but return the commands by step; steps without commands are left out."""
+        """Process timers and events as `tick` does; return the commands by step, without steps that have none."""
         emitted: list[Emission] = []
         for event in sorted(events, key=lambda e: e.at):
             self._timers(min(event.at, now), emitted)
@@ -145,7 +148,7 @@ class Runtime:
         return self._take(taken, "goto")
 
     def forget(self, person: PersonName) -> bool:
-        """Remove a person's name from the snapshot; return False if it was not there."""
+        """Remove a person's name from the snapshot, and journal that; return False if the name was not there."""
         before = self.snapshot
         self._snapshot = forgetful(self.project.machine, before, person)
         if self._snapshot is before:

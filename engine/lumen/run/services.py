@@ -24,13 +24,13 @@ from lumen.run.setup import Setup
 from lumen.run.story import staged
 
 EXHIBITION = "exhibition"
-"""The sender of the messages of an exhibition in one process."""
+"""The sender of messages from an exhibition in one process."""
 
 T = TypeVar("T")
 
 
 class Services:
-    """The bus, clock, node and narrator of an exhibition, its parts, and the objects that they provide.
+    """The bus, clock, node and narrator of an exhibition, its parts, and the objects that the parts provide.
 
     A part's maker finds earlier objects here: `services[LiveBehavior]`, or `services.get(RobotPart)` if that may be
     missing. Objects given to `provide` are found in the same way. Raises BusError if the bus can't be reached.
@@ -55,7 +55,7 @@ class Services:
         self.left_out: list[str] = []
         """The parts of packages that could not be made, each with its package.
 
-        Other parts are notified of them when they begin.
+        Other parts are notified of these when the exhibition begins.
         """
         self._provided: list[object] = []
         self._places: dict[Part, int] = {}
@@ -78,8 +78,8 @@ class Services:
     def add(self, place: int, *parts: Part) -> None:
         """Add parts after those of lower places and those already at this place.
 
-        A part that `watches` observes the behaviour's steps, if that is in this process. Raises TypeError if such a
-        part is not an `Observer`.
+        A part that `watches` observes the behaviour's steps, if the behaviour is in this process. Raises TypeError if
+        such a part is not an `Observer`.
         """
         watching = [_observer(part) for part in parts if part.watches and self.plan.brain]
         self._places |= dict.fromkeys(parts, place)
@@ -112,7 +112,7 @@ class Services:
 
     @property
     def needs(self) -> tuple[str, ...]:
-        """The parts that those around the behaviour wait for: its robot, if that may be in another process."""
+        """The parts for which the behaviour's parts wait: the robot, if it may be in another process."""
         return (ROBOT_PART,) if self.plan.roles else ()
 
     def tell(self, who: str) -> Callable[[str], None]:

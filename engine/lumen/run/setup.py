@@ -31,13 +31,13 @@ class Setup:
     robot: Robot
     clock: Clock
     hall: Hall | None
-    """The simulated world around it; None in the real world."""
+    """The simulated world around the robot; None in the real world."""
     blind: str = ""
-    """Why its camera has no images, with advice; empty if it has images."""
+    """Why the robot's camera has no images, with advice; empty if it has images."""
     remote: bool = False
     """Whether the robot's server is in another process."""
     tracking: TrackingService | None = None
-    """Lets controllers follow sightings; None if the exhibition does that itself."""
+    """Lets controllers follow sightings; None if the exhibition does so itself."""
 
     def hurry(self) -> None:
         """End the clock's current wait, if it can, for something urgent."""
@@ -73,7 +73,7 @@ def set_up(
     *,
     real_skills: bool = False,
 ) -> Setup:
-    """Return the robot of a name, on its feet; `options` are the given options of its row.
+    """Return the robot of a name, on its feet; `options` are the given options of the robot's row.
 
     With `real_skills` the recording robot runs the code of added verbs. Raises UsageError if there is no such robot
     here, or the options do not apply to it; RobotError if it can't be reached, or its driver can't be used; LumenError
@@ -113,7 +113,7 @@ def set_up_house(
 
 
 def robot_kind(wanted: str, root: Path) -> str:
-    """Return the name of the robot that performs: the `wanted` one, else the driver of lumen.yaml, else `simulation`.
+    """Return the robot's name: the `wanted` one, else the driver of lumen.yaml, else `simulation`.
 
     Raises UsageError if no robot or driver has the wanted name.
     """
@@ -182,7 +182,7 @@ def runs_in_real_time(kind: str) -> bool:
 
 
 def robot_options() -> tuple[RobotOption, ...]:
-    """Return the options of all robots, one of each name; its help is that of all robots that have the option."""
+    """Return the options of all robots, each name once; the help of an option joins that of all robots that have it."""
     found: dict[str, RobotOption] = {}
     for row in table("robots").values():
         for option in row.options:

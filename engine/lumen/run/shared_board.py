@@ -28,7 +28,7 @@ _log = logging.getLogger(__name__)
 class SharedBoard:
     """A robot's connection to the shared values of its house.
 
-    Received values wait for `drain`, which makes an event of those that differ from the behaviour's.
+    Received values wait for `drain`, which returns an event for those that differ from the behaviour's.
     """
 
     def __init__(self, bus: Bus) -> None:
@@ -41,7 +41,7 @@ class SharedBoard:
         self._next, self._asked = -inf, False
 
     def listen(self, project: Project) -> None:
-        """Subscribe for this project; its robot publishes its values and requests the others' at the next tick."""
+        """Subscribe for this project; at the next tick the robot publishes its values and requests those of others."""
         self._project, self._told = project, None
         key = key_of_house(SHARED_KEY, project.house) if project.section(SharedKeys).by_name else ""
         if key != self._key:
@@ -51,7 +51,7 @@ class SharedBoard:
 
     @property
     def empty(self) -> bool:
-        """Whether no message and no request waits."""
+        """Whether no message and no other robot's request waits."""
         return not self._waiting and not self._asked
 
     @property
@@ -70,7 +70,7 @@ class SharedBoard:
         return events
 
     def tell(self, snapshot: Snapshot, now: float) -> None:
-        """Publish the robot's own values if they changed, another robot requests them, or RETELL_PERIOD has passed."""
+        """Publish the robot's own values if they changed, if another robot requests them, or after RETELL_PERIOD."""
         project = self._project
         if project is None or not self._key:
             return

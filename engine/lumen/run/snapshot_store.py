@@ -16,7 +16,7 @@ SNAPSHOT_FILE, ALIVE_FILE = "snapshot.json", "alive.json"
 LAST_GOOD_FILE = "good.json"
 SNAPSHOT_VERSION = 1
 SNAPSHOT_SPACING = 0.02
-"""The least time between two snapshots [s]: a simulation may run a hundred steps in it."""
+"""The least time between two snapshots [s]; a simulation may run a hundred steps in that time."""
 
 
 class StoredSnapshot(NamedTuple):
@@ -51,7 +51,7 @@ class SnapshotStore:
         self._last: Snapshot | None = None
         self._written = 0.0
         self.trouble = ""
-        """The reason why the first failed write failed; empty if none did."""
+        """The reason of the first failed write; empty if no write failed."""
         self.count = 0
         """The number of snapshots written."""
 
@@ -116,7 +116,10 @@ class SnapshotStore:
             return None
 
     def of_another_version(self) -> tuple[str, bool]:
-        """Return the version of a snapshot of another version of Lumen, else empty; and whether the robot rests."""
+        """Return the version and the robot's rest in a snapshot that another version of Lumen wrote.
+
+        The version is an empty string, and the rest False, without such a snapshot.
+        """
         data = self._home.read_json(SNAPSHOT_FILE)
         said = data.get("version", SNAPSHOT_VERSION) if isinstance(data, Mapping) else SNAPSHOT_VERSION
         return ("", False) if said == SNAPSHOT_VERSION else (str(said)[:20], data.get("rests") is True)
@@ -162,7 +165,10 @@ class SnapshotStore:
                 self._home.remove(path.name)
 
     def _alive(self) -> tuple[float, bool]:
-        """Return when the run was last alive [s since 1970], 0 if unknown, and whether it was ordered to end then."""
+        """Return when the run was last alive [s since 1970], and whether it was then ordered to end.
+
+        The time is 0 if unknown.
+        """
         try:
             said = self._home.read_json(ALIVE_FILE)
             return float(said["time"]), said.get("told") is True

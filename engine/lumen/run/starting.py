@@ -106,7 +106,7 @@ def start_project(folder: Path, like: str, action: str, robot: str = "") -> None
 
 
 def _perform_with(folder: Path, robot: str) -> None:
-    """Set the robot's body in lumen.yaml, and add the motions for it that come with Lumen."""
+    """Set the robot's name and body in lumen.yaml, and add the motions for the body that come with Lumen."""
     main = folder / MAIN_FILE
     main.write_text(_ROBOT.sub(rf"\g<1>{robot.capitalize()}\g<2>{robot}\g<3>", main.read_text("utf-8")), "utf-8")
     own = shipped_root() / "motions" / robot

@@ -47,8 +47,8 @@ def status_of(
 
     Times are ISO 8601 in UTC on the exhibition's clock; those of stops and reloads, which people make, are real.
     Unknown values are None: the `visitor` before they give a name, the `battery` and the `ears` of a robot that has
-    none. `said` has the state of the `ears`, and the project's own `modules` and `skills`, which the status lacks if
-    there are none; the skills that another process performs are in its presence.
+    none. `said` has the state of the `ears`, and of the project's own `modules` and `skills`; the status lacks the
+    latter two if there are none. The skills that another process performs are in the presence of that process.
     """
     return {
         "robot": project.robot,

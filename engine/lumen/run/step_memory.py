@@ -33,7 +33,7 @@ class StepMemory(Observer):
         self._idle: deque[NumberedStep] = deque(maxlen=MAX_IDLE)
 
     def look(self) -> None:
-        """Record a jump if the snapshot before a tick is not that of the last step, as after a reload."""
+        """Record a jump if the present snapshot is not that of the last step, as after a reload."""
         now = self._standing()
         if now is not None and now is not self._last:
             before, self._last = self._last, now
@@ -48,7 +48,10 @@ class StepMemory(Observer):
         self._last = step.snapshot
 
     def forget(self, person: PersonName) -> None:
-        """Forget all steps, because any may contain the name. The redacted journal can still answer."""
+        """Forget all steps, because any of them may contain the name.
+
+        The redacted journal can still answer questions about them.
+        """
         self._changes.clear()
         self._idle.clear()
 

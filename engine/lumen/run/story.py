@@ -49,10 +49,10 @@ QUESTION_WITHIN = 30.0
 
 
 def answered(bus: Bus, project: Project, id: str, answer: AnswerQuestion, waited: float) -> UnmetExpectation | None:
-    """Answer the question of an id; return the unmet expectation, None if nothing is wrong.
+    """Answer the question of an id; return the unmet expectation, None if all is well.
 
-    An empty `id` means that no question was asked yet, which is wrong only after QUESTION_WITHIN. `waited` is the time
-    since the step began [s].
+    An empty `id` means that no question was asked yet, which is a failure only after QUESTION_WITHIN. `waited` is the
+    time since the step began [s].
     """
     if not id:
         wanted = f"a question to the module `answers` within {QUESTION_WITHIN:g} s"
@@ -158,7 +158,7 @@ class StoryPlayer(Observer):
         return self.failed is not None or self.position >= len(self.story.steps)
 
     def start(self, now: float) -> None:
-        """Begin the first step at `now` [s]; without this call it begins at 0."""
+        """Begin the first step at `now` [s]; without this call, the first step begins at 0."""
         self._begun = self._since = now
 
     def stepped(self, step: Step) -> None:
@@ -292,7 +292,10 @@ class StoryPlayer(Observer):
         return self._moment(now) >= self._awaited
 
     def _answer(self, answer: AnswerQuestion, now: float) -> bool:
-        """Answer the last question; return False until a question was asked."""
+        """Answer the last question; return False while no question was asked.
+
+        The story fails if no question is asked within QUESTION_WITHIN, or the answer can't be sent.
+        """
         id, self._witness.asked = self._witness.asked, ""
         if id:
             self._tell(answer)
@@ -325,5 +328,5 @@ class StoryPlayer(Observer):
 
 
 def _distance(lacking: tuple[UnmetExpectation, ...]) -> tuple[bool, int]:
-    """Return how far an expectation is from being met: whether a state is missing, and the number of unmet parts."""
+    """Return the distance from meeting an expectation: whether a state is missing, and the number of unmet parts."""
     return any(lack.state for lack in lacking), len(lacking)

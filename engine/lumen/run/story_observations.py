@@ -13,7 +13,7 @@ from lumen.language.stories import Expect, Happen, SetSkills, Story
 
 
 class UnmetExpectation(NamedTuple):
-    """An expectation, and the actual outcome, in words."""
+    """An unmet expectation and the actual outcome, in words."""
 
     expected: str
     was: str
@@ -30,7 +30,7 @@ class StoryObservations:
     context: dict[str, object] = field(default_factory=dict)
     """The behaviour's context."""
     place: str = ""
-    """The robot's place; empty if it is at none."""
+    """The robot's place; empty if the robot is at none."""
     said: list[str] = field(default_factory=list)
     """Texts that the robot began to say."""
     played: list[str] = field(default_factory=list)
@@ -44,7 +44,7 @@ class StoryObservations:
     doing: dict[str, Do] = field(default_factory=dict)
     """The skills under way, by id."""
     asked: str = ""
-    """The id of the question without an answer; empty for none."""
+    """The id of the question that was not answered yet; empty for none."""
 
     def unmet(self, expected: Expect) -> tuple[UnmetExpectation, ...]:
         """Return everything in `expected` that is not met now."""
@@ -89,7 +89,7 @@ class StoryObservations:
         return None
 
     def hear(self, event: Event | None) -> None:
-        """Record that the question is answered if this event answers it; a filler does not."""
+        """Record that the question is answered if this event answers it; a filler is no answer."""
         if event and self.asked and event.name.endswith(f".command.{self.asked}"):
             self.asked = self.asked if event.data and event.data.get("filler") else ""
 
@@ -99,7 +99,7 @@ class StoryObservations:
 
 
 def expects_fall(story: Story, machine: MachineDefinition) -> bool:
-    """Return whether a story includes a fall: as an event, or by expecting a state that a fall leads to."""
+    """Return whether a story includes a fall: as an event, or by expecting a state to which a fall leads."""
     answers = {
         machine.states[target].name
         for state in machine.states.values()
@@ -114,7 +114,10 @@ def expects_fall(story: Story, machine: MachineDefinition) -> bool:
 
 
 def expects_error(story: Story, machine: MachineDefinition) -> bool:
-    """Return whether a story includes an error of a `do`: it sets one, or expects a state that only errors lead to."""
+    """Return whether a story includes an error of a `do`.
+
+    The story sets an error, or expects a state to which only errors lead.
+    """
     transitions = [t for m in (machine, *machine.invoked.values()) for s in m.states.values() for t in s.transitions]
     names = {path: state.name for m in (machine, *machine.invoked.values()) for path, state in m.states.items()}
     failed, other = set[str](), set[str]()
@@ -144,7 +147,7 @@ def _at(place: str) -> str:
 
 
 def _texts(texts: list[str], wanted: str) -> str:
-    """Return the texts that were said; of several, also name the one most like the wanted text."""
+    """Return the texts that were said; if there are several, also the one most like the wanted text."""
     shown = "; ".join(f"“{t}”" for t in texts) or "nothing"
     return f"{shown}; the nearest is “{max(texts, key=partial(_likeness, wanted))}”" if len(texts) > 1 else shown
 

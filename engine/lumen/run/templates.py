@@ -176,7 +176,7 @@ def _module(name: str, root: Path) -> Written:
 def _with_module(text: str, name: str, entry: str) -> str:
     """Return lumen.yaml with an entry in `modules`; unchanged if `modules` is written in an unusual way.
 
-    Raises UsageError if there is a module of that name.
+    Raises UsageError if there already is a module of that name.
     """
     lines = text.splitlines(keepends=True)
     at = next((i for i, line in enumerate(lines) if re.match(r"modules\s*:", line)), None)

@@ -79,7 +79,10 @@ class TraceSubscriber:
         return self._wish(PRESS(button=label, by=by))
 
     def approve(self, by: str, *, go: bool) -> str:
-        """Request a decision on the event that has waited longest; return why that can't be sent, else empty."""
+        """Request a decision on the event that has waited longest.
+
+        Return why the request can't be sent, else an empty string.
+        """
         return self._wish(APPROVE(id="", go=go, by=by))
 
     def set_autonomy(self, level: Autonomy, by: str) -> None:

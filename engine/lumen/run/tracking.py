@@ -48,7 +48,10 @@ class LocalTracking:
         self.reload(project)
 
     def reload(self, project: Project) -> None:
-        """Switch to another bundle; a changed controller that is on keeps the last sightings."""
+        """Switch to another bundle; a changed controller that is on keeps the last sightings.
+
+        A controller that the bundle lacks is switched off.
+        """
         old, self._project = self._project, project
         for name in list(self._trackers):
             controller = project.controllers.get(name)
@@ -66,14 +69,14 @@ class LocalTracking:
         return tuple(self._trackers)
 
     def switch(self, track: Track) -> None:
-        """Switch a controller on or off; ignore one that is already on, and one that the bundle lacks."""
+        """Switch a controller on or off; ignore a controller that is already on, or that the bundle lacks."""
         if not track.on:
             self._trackers.pop(track.controller, None)
         elif track.controller not in self._trackers and (found := self._project.controllers.get(track.controller)):
             self._trackers[track.controller] = Tracker(found, self._project.body)
 
     def tick(self, now: float) -> None:
-        """Read the messages, and aim at `now` [s]."""
+        """Read the messages, and aim the robot's joints at `now` [s]."""
         seen: dict[str, dict[str, float]] = {}
         for route, message in self._inbox.taken():
             for name, tracker in self._trackers.items():

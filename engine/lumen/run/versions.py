@@ -24,19 +24,19 @@ class Version(NamedTuple):
     """A project in one version."""
 
     name: str
-    """The name that was given, or the project's folder."""
+    """The name that was given; the project's folder if none was."""
     project: Project
     files: Mapping[str, bytes]
     """The contents of its files, by path."""
     snapshot: Snapshot | None = None
-    """The current snapshot if it runs now; else None."""
+    """The current snapshot if this version is running now; else None."""
 
 
 def version(name: str | None, here: Path | None = None, robot: str = "") -> Version:
     """Return a version by name: `live`, a folder, or a revision of the project `here` (default: this one, or above).
 
-    Without a name it is that project's present files. Of several robots it is that of `robot`, by default the first.
-    Raises UsageError if there is no such version, or its files have errors.
+    Without a name it is that project's present files. Of several robots, the version is that of `robot`, by default the
+    first. Raises UsageError if there is no such version, or its files have errors.
     """
     folder = name is not None and name != LIVE and os.path.exists(name)
     root = own_project(name) if folder else here or own_project()

@@ -1,4 +1,4 @@
-"""A visitor who walks up, speaks, touches and leaves, as modules and people do in a real hall."""
+"""A simulated visitor who walks up, speaks, touches and leaves, as visitors do in a real hall."""
 
 import logging
 from collections.abc import Mapping
@@ -24,7 +24,7 @@ SPEECH_ROUTE = "heard"
 class VisitorActor:
     """A visitor who walks through the hall at VISITOR_SPEED, and speaks.
 
-    Their words are published as messages of the speech module, on the route `heard`.
+    The visitor's words are published as messages of the speech module, on the route `heard`.
     """
 
     def __init__(self, project: Project, hall: Hall, bus: Bus) -> None:
@@ -83,7 +83,7 @@ class VisitorActor:
         self._hall.set_skills(ends)
 
     def tick(self, now: float) -> None:
-        """Move the visitor on to the time `now` [s]."""
+        """Move the visitor by the time from the last tick to `now` [s]."""
         dt, self._last = now - self._last, now
         if self._visitor is None or self._goal is None:
             return

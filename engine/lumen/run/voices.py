@@ -42,7 +42,7 @@ class RobotVoice(Protocol):
         ...
 
     def close(self) -> None:
-        """Release its resources."""
+        """Release the resources of the voice."""
         ...
 
 
@@ -112,7 +112,10 @@ class Speaks(Protocol):
 def voiced(
     chosen: Setup, voice: str, file: Path | None, language: str, track: AudioTrack | None = None
 ) -> Callable[[], None]:
-    """Give the robot a voice; return the function that ends it. Raises UsageError or ModuleError if that fails."""
+    """Give the robot a voice; return a function that ends the voice.
+
+    Raises UsageError or ModuleError if the voice is not available.
+    """
     found = speaker(voice, file, chosen.robot, language, track)
     if found is None:
         return lambda: None
@@ -124,7 +127,7 @@ def voiced(
 def speaker(
     voice: str, file: Path | None, robot: Robot, language: str, track: AudioTrack | None = None
 ) -> RobotVoice | None:
-    """Return a voice; None for `none`. Raises UsageError or ModuleError if it is not available."""
+    """Return a voice; None for `none`. Raises UsageError or ModuleError if the voice is not available."""
     if voice == "none":
         if file:
             raise UsageError("--sound needs a voice: add --voice espeak")

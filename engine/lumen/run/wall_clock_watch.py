@@ -10,14 +10,14 @@ from lumen.statechart import Snapshot
 TOLERANCE = 1.0
 """The difference that is ignored [s], because ticks may be late, and a simulation slower than real time."""
 READINGS = 5
-"""The greatest number of readings of both clocks, if a busy machine suspends the process between two readings."""
+"""The greatest number of attempts to read both clocks without a suspension of the process in between."""
 
 
 def date_of_zero(now: Callable[[], float], wall: Callable[[], float]) -> float:
     """Return the date [s since 1970] of time 0 of the clock `now` [s], by the machine's clock `wall`.
 
-    A process that is suspended between its readings of the two clocks would see a jump that never happened. So `now` is
-    read before and after, and all is read again if too much time passed, at most `READINGS` times.
+    If the process is suspended between its readings of the two clocks, the result would be wrong. So `now` is read
+    before and after `wall`; if too much time passed, both are read again, at most `READINGS` times.
     """
     for _ in range(READINGS):
         before, date, after = now(), wall(), now()
@@ -29,15 +29,18 @@ def date_of_zero(now: Callable[[], float], wall: Callable[[], float]) -> float:
 class WallClockWatch:
     """A comparison of the exhibition's time and time zone with this machine's clock and the project's time zone.
 
-    `timezone` returns the project's. Unless the exhibition runs in real time (`real`), it has a time of day of its own,
-    and only the time zones are compared.
+    `timezone` returns the project's time zone. An exhibition that does not run in real time (`real`) has a time of day
+    of its own, so only the time zones are compared.
     """
 
     def __init__(self, timezone: Callable[[], str], *, real: bool, clock: Callable[[], float] = time.time) -> None:
         self._timezone, self._real, self._clock = timezone, real, clock
 
     def tick(self, now: Callable[[], float], snapshot: Snapshot) -> Event | None:
-        """Return the event for the behaviour if its time of day changed, else None; `now` returns its time [s]."""
+        """Return the event that sets the behaviour's time of day, if that is no longer right; else None.
+
+        `now` returns the exhibition's time [s].
+        """
         epoch, zone = snapshot.epoch, self._timezone()
         if self._real and abs((found := date_of_zero(now, self._clock)) - epoch) > TOLERANCE:
             epoch = found

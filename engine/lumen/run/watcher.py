@@ -24,7 +24,7 @@ MAX_READ_PERIOD = 1.0
 HINT_DEBOUNCE = 10
 """The time for which the operating system's notifications are collected [ms]."""
 EARLY = 5.0
-"""The time after a watcher's start at which the checker is prepared [s]; before it, the exhibition is busy."""
+"""The time after a watcher's start at which the checker is prepared [s]; earlier, the exhibition is busy."""
 SWITCH_INTERVAL = 0.001
 """The longest time that a thread may block the others [s]: a stop passes through four of them."""
 
@@ -39,7 +39,7 @@ class SavedFiles(NamedTuple):
     files: WatchedFiles
     """The contents of all files of the project, by path."""
     changed: tuple[str, ...]
-    """The paths of the files that differ from those checked before."""
+    """The paths of the files that differ from the files that were checked before."""
     seen: float
     """When the first change was noticed [s, monotonic]."""
     quiet: float
@@ -53,7 +53,7 @@ class GivenFiles(NamedTuple):
 
     files: WatchedFiles
     asked: object
-    """The value that is returned with their result."""
+    """The value that is returned with the result for these files."""
 
 
 class FileWatcher(Generic[T]):
@@ -124,7 +124,7 @@ class FileWatcher(Generic[T]):
         self._hint.set()
 
     def close(self) -> None:
-        """End the threads, and wait for their end."""
+        """End the threads, and wait until they have ended."""
         self._stop.set()
         self._hint.set()
         for thread in self._threads:
@@ -192,7 +192,7 @@ class FileWatcher(Generic[T]):
         return self._hint.is_set()
 
     def _settled(self, saved: SavedFiles) -> tuple[T | None, SavedFiles]:
-        """Return the files once they have not changed for long enough, with their result if they were checked."""
+        """Return the files once they have not changed for long enough, and the result if they were checked already."""
         since, judged = time.monotonic(), self._judged_at_once(saved)
         while not self._stop.is_set():
             self._hint.clear()
@@ -245,7 +245,7 @@ class FileWatcher(Generic[T]):
 
 
 def _whole(files: WatchedFiles, before: WatchedFiles) -> bool:
-    """Return whether one file differs, and its last line is the same: a half-written file ends elsewhere."""
+    """Return whether exactly one file differs, and its last line is the same: a half-written file ends elsewhere."""
     match list(_differing(files, before)):
         case [path] if path in files and path in before:
             return _end(files[path]) == _end(before[path]) != b""
@@ -276,7 +276,7 @@ def _as_others_need() -> Iterator[None]:
 
 
 def watched_folders(root: Path) -> dict[Path, tuple[int, int]]:
-    """Return the watched folders that exist, with device and inode: another folder of the same name may replace one.
+    """Return the watched folders that exist, with device and inode, because a folder may be replaced under its name.
 
     If the project's folder is a link, the folder that contains the link is watched too.
     """

@@ -12,7 +12,7 @@ class StateBox:
     title: str
     """The name that is shown."""
     rows: tuple[str, ...] = ()
-    """Descriptions of its transitions."""
+    """Lines below the title: transitions, invoked behaviours, and for a hub the number of states that lead to it."""
     within: tuple["StateBox", ...] = ()
     """The boxes inside."""
     parallel: bool = False
@@ -20,9 +20,9 @@ class StateBox:
     final: bool = False
     """Whether the state is a final state."""
     first: bool = False
-    """Whether the enclosing state begins with it."""
+    """Whether the enclosing state begins with this state."""
     marked: bool = False
-    """Whether the picture is about it."""
+    """Whether the picture is about this state."""
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,7 @@ class Diagram:
     """The ids of the boxes from which and to which each arrow leads; each pair once, in order."""
 
     def all(self) -> Iterator[StateBox]:
-        """Yield every box, outer ones first."""
+        """Yield every box, each before the boxes inside it."""
         waiting = list(self.boxes)
         while waiting:
             box = waiting.pop(0)

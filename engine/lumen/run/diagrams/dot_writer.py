@@ -12,7 +12,7 @@ digraph {
 
 
 def dot_text(diagram: Diagram) -> str:
-    """Return the graph's text, ending with a newline; `dot -Tsvg` draws it."""
+    """Return a diagram as DOT text that ends with a newline; `dot -Tsvg` draws it."""
     ids = {box.id: f"s{number}" for number, box in enumerate(diagram.all())}
     boxes = {box.id: box for box in diagram.all()}
     lines = [_HEAD, f"  label={_quoted(diagram.title)}"]

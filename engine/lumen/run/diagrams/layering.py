@@ -83,7 +83,10 @@ def _way(
 
 
 def _without_cycles(nodes: Sequence[N], edges: Sequence[Edge[N]]) -> list[Edge[N]]:
-    """Return the edges without loops; those that close a cycle in a depth-first walk from the first are reversed."""
+    """Return the edges without self-loops, and with those reversed that close a cycle in a depth-first walk.
+
+    The walk starts at the first node.
+    """
     out: dict[N, list[N]] = {n: [] for n in nodes}
     for one, other in edges:
         out[one].append(other)

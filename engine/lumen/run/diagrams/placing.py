@@ -7,7 +7,7 @@ from lumen.run.diagrams.diagram import Diagram, StateBox
 from lumen.run.diagrams.layering import GAP, Extent, Point, layered
 
 WIDEST, WAYS = 1260.0, 60.0
-"""The greatest width of a layer, and the room around a frame for arrows [px], so that a width of 1400 suffices."""
+"""The greatest width of a layer, and the room for arrows around a frame [px]. A picture then fits in 1400 px."""
 TITLE, ROW = 14.0, 12.0
 """The font sizes of titles and rows [px]."""
 TITLE_HEIGHT, ROW_HEIGHT = 20.0, 16.0
@@ -35,7 +35,7 @@ class PlacedArrow(NamedTuple):
     start: PlacedBox
     end: PlacedBox
     way: tuple[Point, ...]
-    """The points that it passes between them."""
+    """The points that the arrow passes between the two boxes."""
 
 
 class PlacedDiagram(NamedTuple):
@@ -47,7 +47,7 @@ class PlacedDiagram(NamedTuple):
 
 
 class _Inside(NamedTuple):
-    """The content of a frame, relative to its corner."""
+    """The content of a frame, relative to the corner of the frame."""
 
     boxes: tuple[PlacedBox, ...]
     arrows: tuple[PlacedArrow, ...]
@@ -104,7 +104,7 @@ def _measured(box: StateBox, arrows: Sequence[tuple[str, str]], widest: float) -
 
 
 def _between(boxes: Sequence[StateBox], arrows: Sequence[tuple[str, str]]) -> list[tuple[str, str]]:
-    """Return the arrows from one of these boxes, or its content, to another of them, each once."""
+    """Return the arrows between different boxes, each once; arrows of a box's content count as arrows of the box."""
     owner = {inner.id: box.id for box in boxes for inner in Diagram("", (box,)).all()}
     lifted = ((owner.get(a, ""), owner.get(b, "")) for a, b in arrows)
     return list(dict.fromkeys((a, b) for a, b in lifted if a and b and a != b))

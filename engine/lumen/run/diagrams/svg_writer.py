@@ -30,7 +30,7 @@ SPREAD = 0.6
 
 
 def svg(diagram: Diagram) -> str:
-    """Return the picture's text, ending with a newline."""
+    """Return a diagram as SVG text that ends with a newline."""
     placement = place(diagram)
     top = MARGIN + 34
     width, height = placement.size.width + 2 * MARGIN, placement.size.height + top + MARGIN

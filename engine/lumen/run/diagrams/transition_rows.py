@@ -9,12 +9,15 @@ from lumen.language.diagnostics import NodePath
 from lumen.language.machines import MachineDefinition, State, StateKind, Transition
 
 MAX_ROW = 46
-"""The number of characters to which a cause is cut and a row is wrapped; the target at its end may exceed it."""
+"""The length to which a cause is cut and a row is wrapped [characters]; the target may make a row longer."""
 AGAIN = "again"
 
 
 def rows_of(machine: MachineDefinition, state: State, only: str = "") -> Iterator[str]:
-    """Yield a row for each target with the causes of its transitions; `only` is the path of a single target."""
+    """Yield a row for each target, with the causes of the transitions to it.
+
+    `only`, if given, is the path of the only target to include.
+    """
     by_target: dict[str, list[str]] = {}
     seen: set[str] = set()
     for transition in (t for t in state.transitions if not made(t.where)):
@@ -31,7 +34,7 @@ def rows_of(machine: MachineDefinition, state: State, only: str = "") -> Iterato
 
 
 def trigger(transition: Transition, *, after_others: bool = False) -> str:
-    """Return the cause of a transition; `after_others` marks the remaining case of an event with guards."""
+    """Return the cause of a transition; with `after_others`, a row with a guard for the same event precedes it."""
     event = transition.caption("failed")
     guard = guard_phrase(transition.guard) if transition.guard else ""
     if guard.startswith("“") and not transition.hears:

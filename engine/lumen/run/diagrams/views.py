@@ -25,14 +25,20 @@ def overview(machine: MachineDefinition) -> Diagram:
 
 
 def region(machine: MachineDefinition, name: str) -> Diagram:
-    """Return the picture of a state's content and transitions. Raises UsageError if no such state contains others."""
+    """Return the picture of a state's content and transitions.
+
+    Raises UsageError if no state of that name contains others.
+    """
     state = _named(machine, name, lambda state: bool(state.children))
     box = _box(machine, state, _led_here(machine), rows=True)
     return Diagram(f"{machine.id}: {state.name}", (box,), _arrows(machine, state.path))
 
 
 def neighbourhood(machine: MachineDefinition, name: str) -> Diagram:
-    """Return the picture of a state with those before and after it. Raises UsageError if it does not exist."""
+    """Return the picture of a state, with the states that lead to it and those to which it leads.
+
+    Raises UsageError if the state does not exist.
+    """
     state = _named(machine, name, lambda _: True)
     around = [state, *(machine.states[path] for path in _above(machine, state))]
     out = {target for each in around for t in each.transitions for target in t.targets}
@@ -48,7 +54,7 @@ def neighbourhood(machine: MachineDefinition, name: str) -> Diagram:
 
 
 def _box(machine: MachineDefinition, state: State, led: Counter[str], *, rows: bool, first: bool = False) -> StateBox:
-    """Return the box of a state with its content; `led` is the number of other states that lead to each."""
+    """Return the box of a state with its content; `led` has the number of other states that lead to each path."""
     children = [machine.states[path] for path in state.children]
     within = [child for child in children if child.kind is not StateKind.HISTORY and not made(child.where)]
     begins = [within[0].path] if state.for_each else state.initial
@@ -82,14 +88,17 @@ def _rows(machine: MachineDefinition, state: State) -> Iterable[str]:
 
 
 def _runs(state: State) -> Iterable[str]:
-    """Yield a state's other activities: the behaviours that it invokes, and its `for`."""
+    """Yield a row for each behaviour that a state invokes, and a row for its `for`."""
     yield from (f"invokes {invocation(invoke)}" for invoke in state.invoke)
     if state.for_each:
         yield f"for each {state.for_each.variable}"
 
 
 def _arrows(machine: MachineDefinition, within: str = "") -> tuple[tuple[str, str], ...]:
-    """Return the arrows as pairs of ids, except to a hub, or between a state and its content."""
+    """Return arrows as pairs of ids, except those to a hub, and those between a state and its content.
+
+    Only arrows inside the state at the path `within` are returned; an empty path stands for all.
+    """
     hubs = {path for path, count in _led_here(machine).items() if count > MAX_ARROWS_IN}
     found: dict[tuple[str, str], None] = {}
     for state in machine.states.values():
@@ -108,13 +117,13 @@ def _drawn(machine: MachineDefinition, path: str) -> str:
 
 
 def _led_here(machine: MachineDefinition) -> Counter[str]:
-    """Return the number of other states that lead to each."""
+    """Return the number of other states that lead to each state, by path."""
     pairs = {(s.path, _drawn(machine, e)) for s in machine.states.values() for t in s.transitions for e in t.targets}
     return Counter(end for start, end in pairs if start != end)
 
 
 def _inside(path: str, other: str) -> bool:
-    """Return whether a state is another one, or below it."""
+    """Return whether a state is `other` or inside it; an empty `other` contains every state."""
     return not other or path == other or path.startswith(f"{other}.")
 
 

@@ -30,13 +30,13 @@ class Forgetting:
     pictures: int = 0
     """The number of deleted pictures."""
     deleted: list[ForgottenPlace] = field(default_factory=list)
-    """The places where something was deleted."""
+    """The places where data was deleted."""
     left: list[ForgottenPlace] = field(default_factory=list)
-    """The places where something could not be deleted."""
+    """The places where data could not be deleted."""
     elsewhere: list[ForgottenPlace] = field(default_factory=list)
     """The places that can't be reached from here."""
     others: tuple[str, ...] = ()
-    """The names of other visitors that contain the name."""
+    """The names of other visitors that contain the person's name."""
 
 
 FILES_ELSEWHERE = "each machine that runs a part has its own files: run the command there, too"

@@ -30,7 +30,7 @@ PATIENCE = 5.0
 def forget_in(folder: Path, name: str, found: Forgetting) -> None:
     """Forget a person in all files of the home in `folder`, and add the deleted and the remaining data to `found`.
 
-    A running exhibition changes its own files; this waits for it, for at most PATIENCE.
+    A running exhibition changes its own files; the function waits for that, for at most PATIENCE.
     """
     for feature, where in rows("file_forgetters"):
         called(feature, where, folder, name, found)
@@ -41,7 +41,10 @@ def forget_in(folder: Path, name: str, found: Forgetting) -> None:
 
 
 def forget_inputs(folder: Path, name: str, found: Forgetting) -> None:
-    """Forget a person in the journal, the behaviour's snapshot and small records, and add the result to `found`."""
+    """Forget a person in the `.jsonl` files, the behaviour's snapshot and the journal, and add the result to `found`.
+
+    A running exhibition changes the snapshot and the newest file of the journal; wait for that, for at most PATIENCE.
+    """
     person, home = PersonName(name, map(name_key, found.others)), Home(folder)
     for file in sorted(folder.glob("*.jsonl*")):
         attempt(found, file, lambda file=file: _lines(file, person, found))  # type: ignore[misc]
@@ -102,7 +105,10 @@ def _snapshot(home: Home, person: PersonName, found: Forgetting) -> None:
 
 
 def _drafts(folder: Path) -> None:
-    """Delete drafts that a crash left half-written, because they may name anyone."""
+    """Delete the half-written drafts of a crash, because they may contain the name.
+
+    While an exhibition runs, only drafts older than DRAFT_AGE are deleted.
+    """
     for draft in folder.rglob("*.new"):
         with suppress(OSError):  # its writer may just have renamed it
             if not Home(folder).held() or time.time() - draft.stat().st_mtime > DRAFT_AGE:

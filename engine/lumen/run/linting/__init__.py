@@ -1,1 +1,1 @@
-"""Lint of the projects on a command line: of their files, of a reload to them, and by physics."""
+"""Lint of the projects on a command line: their findings, stored findings, and the effects of a reload."""

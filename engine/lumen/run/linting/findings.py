@@ -23,7 +23,7 @@ class Findings:
     elsewhere: int = 0
     """The number of findings in other files, which are not shown."""
     names: dict[str, str] = field(default_factory=dict, compare=False, repr=False)
-    """Cache of `name`."""
+    """The results of `name`, by file."""
 
     def name(self, file: str) -> str:
         """Return the path of a project's file relative to the working directory, so that a terminal can open it."""

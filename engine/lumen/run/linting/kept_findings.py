@@ -43,7 +43,7 @@ def known_or_checked(root: Path, files: Mapping[str, bytes]) -> tuple[Diagnostic
 
 
 def _name(root: Path, files: Mapping[str, bytes]) -> str:
-    """Return the cache's name for everything that is known before lint begins."""
+    """Return the name of the cache entry: a hash of the files, the date, and the machine's and engine's properties."""
     about = f"{time.strftime('%Y-%m-%d')} {surroundings(root)}"
     digest = hashlib.sha256(about.encode("utf-8", "surrogatepass"))
     for path, content in sorted(files.items()):
@@ -57,7 +57,7 @@ def _plain(found: Diagnostic) -> list[Any]:
 
 
 def _read(content: bytes | None) -> tuple[Diagnostic, ...] | None:
-    """Return the stored findings; None if there are none that still hold."""
+    """Return the stored findings; None if there are none, or if they no longer hold."""
     try:
         kept = json.loads(content or b"null")
         if not unchanged(kept["looks"]):

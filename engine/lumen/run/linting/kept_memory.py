@@ -1,8 +1,8 @@
 """Intermediate results of lint for each file of a project, kept for the next lint: most files do not change.
 
-It is the memory of a process that keeps running (project/memoization.py), saved in the user's cache under a hash of the
+The results that a process has memoized (project/memoization.py) are saved in the user's cache under a hash of the
 project's place, the engine's own files and Python; time zones and libraries must be the same. Each result is used only
-for the exact content that it was made from.
+for the exact content from which it was made.
 """
 
 import hashlib

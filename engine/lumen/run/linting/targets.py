@@ -47,7 +47,7 @@ class FindingsOf(Protocol):
 
 
 def lint_targets(paths: Sequence[str], stdin_name: str | None = None, *, whole: bool = False) -> list[LintTarget]:
-    """Return the projects that these folders and files are or belong to; without paths, the one here or above.
+    """Return the projects that these paths name or lie in; without paths, the project here or above.
 
     For a file, only findings in that file are shown; with `whole`, those of its whole project. `-` reads standard input
     as the file `stdin_name`. Raises UsageError for a path outside a project, and for a file that lint does not read.
@@ -87,7 +87,10 @@ def checked(root: Path, files: Mapping[str, bytes], *, kept: bool = False) -> tu
 
 
 def _owner(path: str, whole: bool) -> tuple[Path, set[str]]:
-    """Return the project of a folder or file, and which of its files are meant; an empty set means the whole one."""
+    """Return the project of a folder or file, and the files in it that are meant; an empty set stands for all.
+
+    Raises UsageError if the path can't be read, belongs to no project or has no file that lint reads.
+    """
     here = Path(path)
     try:
         alone = here.is_file() and here.name != MAIN_FILE

@@ -38,9 +38,9 @@ def modules(services: Services) -> list[Part]:
 
 
 def own_modules(services: Services) -> list[OwnModulePart]:
-    """Make the parts that watch the project's own programs: all for a behaviour, else those that this process starts.
+    """Make the parts that watch the project's own programs.
 
-    A story has no such parts.
+    The brain's process watches all programs, another process those that it starts. A story has no such parts.
     """
     plan = services.plan
     names = [name for name in own_modules_of(services.project.modules) if plan.brain or name in plan.roles]
@@ -84,7 +84,7 @@ def _module(services: Services, name: str) -> Part | None:
 
 
 def _share(services: Services, names: list[str]) -> None:
-    """Announce which modules are here, and leave reports of faces to the eyes if they are here."""
+    """Announce the modules of this process; if the eyes are among them, the robot does not report faces."""
     faces = services[RobotPart].faces
     if faces and EYES in names:
         faces.quiet = True

@@ -26,7 +26,7 @@ def follower(services: Services) -> BundleFollower:
 
 
 def behavior(services: Services) -> None:
-    """Provide the behaviour, which moves a robot over the bus."""
+    """Provide the behaviour, with a body and a hold that control a robot over the bus."""
     plan, bus, presence = services.plan, services.bus, _presence(services)
     body = RemoteBody(staged(plan.project, plan.story), bus, services.clock, presence)
 
@@ -57,7 +57,7 @@ def motion(services: Services) -> MotionPart:
 
 
 def narrator(services: Services) -> None:
-    """Subscribe the narrator to the behaviour's steps, and with it the predictor of the robot's refusals."""
+    """Subscribe the narrator, then the predictor of the robot's refusals, to the behaviour's steps."""
     services.behavior.loop.observers += [services.narrator, services[RemoteHold]]
 
 

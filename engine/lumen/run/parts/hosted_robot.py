@@ -28,13 +28,13 @@ from lumen.upkeep.threads import WatchedThread
 
 
 class HostedRobotPart(RobotPart):
-    """A robot whose brain is in another process; it rests if the brain is gone for long.
+    """A robot whose brain is in another process; if the brain is gone for BRAIN_TIMEOUT, the robot rests.
 
     `noticed` is called with each event that the robot notices, and each answer.
     """
 
     watches = False
-    """A brain in this process reaches the robot over the bus, as it would from another process."""
+    """False, because a brain in this process also reaches the robot over the bus."""
 
     def __init__(
         self,
@@ -59,22 +59,22 @@ class HostedRobotPart(RobotPart):
 
     @property
     def follows(self) -> str:
-        """The session of the brain that it obeys; empty if there is none."""
+        """The session of the brain that the robot obeys; empty if there is none."""
         return self._guard.follows if self._guard else ""
 
     def stopped(self) -> bool:
-        """Return whether a person stopped it."""
+        """Return whether a person stopped the robot."""
         return self.server.hold.stopped is not None
 
     @property
     def said(self) -> dict[str, str]:
-        """The fields of its presence: the brain that it obeys, the person who stopped it, and when."""
+        """The fields of the robot's presence: the brain that the robot obeys, who stopped the robot, and when."""
         stopped = self.server.hold.stopped
         held = {"stopped_by": stopped.by, "stopped_at": stopped.since.isoformat()} if stopped else {}
         return {"follows": self.follows, **held}
 
     def forget(self, person: PersonName) -> None:
-        """Remove a person from the journal on another thread, so that no tick waits for it."""
+        """Remove a person from the journal, on another thread so that no tick waits for that."""
         WatchedThread("lumen-forgetting", lambda: self._journal.forget(person)).start()
 
     def begin(self, now: float) -> None:

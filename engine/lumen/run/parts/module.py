@@ -21,10 +21,10 @@ from lumen.run.presence import Presence
 
 
 def make_module(name: str, project: Project, bus: Bus, tell: Callable[[str], None], folder: Path | None) -> Module:
-    """Return a module that has not begun; its files are in `folder`, None for no files.
+    """Return a module that has not begun, with its files in `folder` (None: no files).
 
-    Raises UsageError if there is no such module, ModuleError if it lacks something that it needs, LumenError with the
-    name of the installed package if the package's code is faulty.
+    Raises UsageError if there is no such module, ModuleError if a requirement of the module is missing, LumenError with
+    the name of the installed package if the package's code is faulty.
     """
     modules = table("modules")
     if name not in modules:

@@ -1,4 +1,4 @@
-"""The motion module's process, Lumen Motion: motions by name, and a head that follows what it sees."""
+"""The process of the motion module, Lumen Motion: it plays motions by name, and lets the head follow sightings."""
 
 import logging
 from collections import deque
@@ -28,7 +28,7 @@ class MotionPart(Part):
     """The part that sends the robot the keyframes of the requested motions, and aims its head by the controllers.
 
     If the brain is gone, the controllers are switched off, and a brain that returns requests them again. If another
-    process takes over the robot, they restart.
+    process takes over the robot, the controllers restart.
     """
 
     name = MOTION

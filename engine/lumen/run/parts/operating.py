@@ -244,7 +244,10 @@ class OperatorPart(Part, Observer):
         self._behavior.loop.runtime.note(**{what: words, "by": person_in(message)})
 
     def _goto(self, message: Message, now: float) -> dict[str, Any]:
-        """Enter a state; with `only: check` just return the states that would be left and entered."""
+        """Enter a state; with `only: check`, just return the states that would be left and entered.
+
+        The answer is a refusal if the state can't be entered.
+        """
         state, by, only = message.body["state"][:MAX_STATE], person_in(message), message.body.get("only") == "check"
         loop = self._behavior.loop
         event = Event(DIRECT_ENTRY, {"by": by, "state": state}, now, cause=Cause("person", sender=by))

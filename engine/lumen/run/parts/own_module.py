@@ -20,7 +20,7 @@ from lumen.run.presence import HERE, LEAVES, PRESENCE_PERIOD, PRESENCE_ROUTE, PR
 from lumen.upkeep.supervised_process import END_TIMEOUT, SupervisedProcess
 
 DEFAULT_HEALTH = 5.0
-"""The longest time between two signs of life of a program, if lumen.yaml does not set it [s]."""
+"""The default of `health`: the longest time between two signs of life of a program [s]."""
 START_TIMEOUT = 30.0
 """The longest time until the first sign of life of a program started here [s]; its `health` if that is longer."""
 STEADY = 2.0
@@ -71,7 +71,7 @@ class OwnModulePart(Part):
 
     @property
     def status(self) -> dict[str, Any]:
-        """Its state for `lumen status`: `here`, `lost` or `awaited`, since when, and why it was lost.
+        """The program's state for `lumen status`: `here`, `lost` or `awaited`, since when, and why it was lost.
 
         A program that is started here also has the number of its restarts.
         """

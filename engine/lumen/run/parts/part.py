@@ -16,9 +16,9 @@ class Part:
     """
 
     name = ""
-    """The role that it gives its process; empty for none."""
+    """The role that the part gives its process; empty for none."""
     needs: Sequence[str] = ()
-    """The names of the parts that must be there before it begins."""
+    """The names of the parts that must be there before this part begins."""
     patient = False
     """Whether the part only waits for inputs, which may be delayed by NAP."""
     watches = False
@@ -26,7 +26,7 @@ class Part:
 
     @property
     def over(self) -> bool:
-        """Whether the node can end."""
+        """Whether the part has ended, which also ends its node."""
         return False
 
     @property
@@ -36,7 +36,7 @@ class Part:
 
     @property
     def trouble(self) -> str:
-        """Why its data can't be saved; empty if nothing is lost."""
+        """Why the part's data can't be saved; empty if nothing is lost."""
         return ""
 
     @property

@@ -55,7 +55,7 @@ class RemoteBody:
         adopt: Callable[[Project], None],
         refuse: Callable[[RobotCommand], str] = lambda _: "",
     ) -> LiveBehavior:
-        """Return the behaviour on this robot; its gaps between ticks count in real time, as the robot counts them."""
+        """Return the behaviour on this robot; gaps between ticks count in real time, as the robot counts them."""
         setup = Setup(self.robot, self._clock, None, tracking=self.tracking)
         found = LiveBehavior(project, setup, bus, story, adopt=adopt, refuse=refuse)
         found.loop.patience *= speed
@@ -153,7 +153,10 @@ class RemoteBrainPart(BrainPart):
         return {}
 
     def _follow(self) -> None:
-        """Handle another robot, and raise BusRefusedError if the robot follows another brain."""
+        """If another process has taken over the robot, end the open commands and restart tracking.
+
+        Raises BusRefusedError if the robot follows another brain.
+        """
         robot = self._others.find(ROBOT_PART)
         if robot is None:
             return

@@ -112,7 +112,7 @@ class RobotPart(Part, Observer):
 
     @property
     def said(self) -> dict[str, str]:
-        """The fields that it adds to the presence: none."""
+        """The fields that the part adds to the presence of this process: none."""
         return {}
 
     def summary(self) -> Iterator[str]:

@@ -82,7 +82,10 @@ class BundleFollower(Part):
                 self._loaded.put(missed)
 
     def _files(self, wanted: str) -> Mapping[str, bytes] | None:
-        """Return the files with that hash, from the project's folder or those that a brain on this machine keeps."""
+        """Return the files whose hash is `wanted`; None if they are not on this machine.
+
+        They come from the project's folder, or from the bundles that a brain on this machine keeps.
+        """
         files = read_files(self._root, self._robot)
         if fingerprint(files) == wanted:
             return files

@@ -59,7 +59,7 @@ class RunDirectory:
     def begin(self, project: Project, files: Mapping[str, bytes]) -> None:
         """Store the files with which the exhibition starts, and delete stored ones that are no longer needed.
 
-        If no files were good so far, they count as the last good ones.
+        If there are no last good files yet, these count as the last good ones.
         """
         if keeper := self.records.keeper:
             kept, good = keeper.kept(), keeper.good()
@@ -69,7 +69,7 @@ class RunDirectory:
             keeper.prune(project.hash, good, kept.bundle if kept else "")
 
     def ended(self, project: Project) -> None:
-        """Record that the exhibition ended normally with these files."""
+        """Record that the exhibition ended normally; its files count as good if no crash is recorded for them."""
         self._ended = True
         self.records.annul()
         if not self.records.died(project.hash):
@@ -95,7 +95,7 @@ class RunDirectory:
     def begin_run(
         self, behavior: LiveBehavior, url: str, reloader: Reloader | None, *, fresh: bool
     ) -> Resumption | FreshStart:
-        """Publish the address of this run and its reloads; return how it resumes the previous run, or starts afresh.
+        """Make this run reachable, report this start as a reload, and return how the run continues or begins.
 
         With `fresh` the previous run is ignored, except that a robot at rest stays at rest.
         """
@@ -157,15 +157,15 @@ class RunDirectory:
     def last_good(self) -> Project | None:
         """Return the last good bundle that ran; None if none was kept.
 
-        A guest reads it in the home of the process that has a brain, which may hold that home. It is loaded in another
-        process, because files may crash the process that reads them.
+        A guest reads it in the home of the process that has a brain, even while that process holds the home. The bundle
+        is loaded in another process, because files may crash the process that reads them.
         """
         keeper = self.records.keeper or SnapshotStore(Home(home_of(self.root, self.robot)))
         files = keeper.files(keeper.good())
         return load_apart(self.root, as_robot(files, self.robot))[0] if files else None
 
     def resumption(self, project: Project) -> Resumption | FreshStart:
-        """Return how the previous run continues under this project, or why it does not."""
+        """Return how the previous run continues under this project, or why not; add the reports to `news`."""
         found = recover(self.root, self.records, project)
         self.news += found.news
         return found.how

@@ -26,7 +26,7 @@ class MigrationOutcome:
     outcome: str
     """`kept`, `moved`, `waits` or `refused`."""
     told: str
-    """Notes, or the reason why it waits or is refused."""
+    """Notes, or the reason why the reload waits or is refused."""
     after: tuple[str, ...]
     """The innermost active states afterwards."""
     verdict: MigrationVerdict

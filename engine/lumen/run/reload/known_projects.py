@@ -42,7 +42,7 @@ def keep(root: Path, files: Mapping[str, bytes], packed: Delta) -> None:
 
 
 def _name(root: Path, files: Mapping[str, bytes]) -> str:
-    """Return the cache's name for everything on which the project depends.
+    """Return the name of the cache entry: a hash of everything on which the project depends.
 
     Of models that were not read, only the listing counts.
     """

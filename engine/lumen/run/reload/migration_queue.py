@@ -55,7 +55,7 @@ class StagedBundle:
     changes: tuple[Change, ...]
     """The changes from the bundle that runs."""
     validation: Validation | None = None
-    """The result of its check; None for a bundle that ran before."""
+    """The result of the bundle's check; None for a bundle that ran before."""
     who: str = "files"
     """The origin of the request: `files`, `command` or `trial`."""
     going: bool = False
@@ -67,19 +67,19 @@ class StagedBundle:
     since: float = field(default_factory=time.monotonic)
     """When the activation was requested [s]."""
     asked: object = None
-    """The last snapshot from which it could not continue; None before any."""
+    """The last snapshot from which the bundle could not continue; None if there was none yet."""
     told: str = ""
-    """The last reported reason for its delay."""
+    """The last reported reason for the delay."""
     objected: bool = False
     """Whether the bundle was refused because recorded visits would change."""
     trial: bool = False
-    """Whether to activate it for one visitor."""
+    """Whether to activate the bundle for one visitor."""
     between: bool = False
     """Whether to wait for the end of a visit, without a time limit."""
     kept: "StagedBundle | None" = None
     """The bundle that waits again after this one's activation; None for none."""
     orders: list[ReloadRequest] = field(default_factory=list)
-    """The requests that receive its verdicts."""
+    """The requests that receive the bundle's verdicts."""
 
 
 class MigrationQueue:
@@ -113,7 +113,7 @@ class MigrationQueue:
         return self._behavior.loop.project
 
     def stage(self, staged: StagedBundle, order: ReloadRequest | None = None) -> None:
-        """Activate a bundle as soon as possible; it replaces the staged one, and takes over its requests."""
+        """Activate a bundle as soon as possible; it replaces the staged bundle, whose requests it takes over."""
         if self.staged and self.staged is not staged:
             staged.orders += self.staged.orders
         if order:
@@ -124,12 +124,12 @@ class MigrationQueue:
         self.staged = staged
 
     def hold(self, staged: StagedBundle) -> None:
-        """Keep a bundle until a person activates it."""
+        """Keep a bundle until a person activates it, and report that it is staged."""
         self.staged = staged
         self._notifier.tell(self._about(staged, "staged"))
 
     def attempt(self, staged: StagedBundle, order: ReloadRequest) -> None:
-        """Activate a bundle until a visit ends; afterwards it waits as before."""
+        """Activate a bundle until a visit ends; afterwards the bundle is staged again."""
         staged.trial = True
         self.stage(staged, order)
 
@@ -164,7 +164,7 @@ class MigrationQueue:
         self.staged = None
 
     def dry_run(self, staged: StagedBundle, order: ReloadRequest) -> None:
-        """Answer with the outcome of a reload of a bundle, which does not happen."""
+        """Answer with the outcome that a reload of a bundle would have; nothing changes."""
         verdict = self._behavior.plan(staged.project, now=order.now)
         report = self._about(staged, "dry run")
         match verdict:

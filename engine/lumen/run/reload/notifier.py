@@ -22,7 +22,7 @@ class ReloadNotifier:
         self.last: ReloadReport | None = None
         """The last result; None before the first."""
         self.last_at = datetime.now(UTC)
-        """When it was reported (UTC)."""
+        """When the last result was reported (UTC)."""
 
     def tell(self, report: ReloadReport, orders: Iterable[ReloadRequest] = ()) -> None:
         """Report a result, and answer the requests that led to it."""

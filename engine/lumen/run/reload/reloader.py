@@ -41,7 +41,7 @@ UNTIL_APPLIED = "nothing saved there is activated until a person applies it"
 MODES = ("auto", "manual", "off")
 """The ways in which saved files are used.
 
-They are activated at once; only checked, to wait for `lumen reload --apply`; or ignored.
+`auto` activates them at once, `manual` only checks them, for `lumen reload --apply`, and `off` ignores them.
 """
 
 
@@ -206,7 +206,10 @@ class Reloader:
         self._queue.tick(now)
 
     def _judge(self, saved: SavedFiles) -> Validation:
-        """Check saved files and prepare their routes and motions, on the watcher's thread so that no tick waits."""
+        """Check saved files, prepare their routes and motions, and store good files.
+
+        This runs on the watcher's thread so that no tick waits.
+        """
         validation = Validation(saved, "")
         try:
             validation = self._validator(saved)

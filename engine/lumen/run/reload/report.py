@@ -30,7 +30,7 @@ class ReloadReport:
     who: str
     """The origin: `files`, `command`, `trial`, `probation`, or `start` for a run with other files than the last."""
     before: str = ""
-    """The hash of the bundle before."""
+    """The hash of the bundle before the reload."""
     after: str = ""
     """The hash of the bundle that was judged."""
     revision: int = 0
@@ -42,7 +42,7 @@ class ReloadReport:
     waiting_for: str = ""
     """The state that must be left first; empty unless the verdict is `waiting`."""
     reason: str = ""
-    """The reason for the verdict; empty if that is clear."""
+    """The reason for the verdict; empty if the verdict needs none."""
     hint: str = ""
     """Advice for people; empty if there is nothing to do."""
     notes: tuple[str, ...] = ()
@@ -59,11 +59,11 @@ class ReloadReport:
     """The data of each listed change (`change_data`)."""
 
     def compared(self, project: Project) -> "ReloadReport":
-        """Return a copy with the details of its changes, which led to `project`."""
+        """Return a copy with the details of the first changes; `project` is the bundle to which they led."""
         return replace(self, details=[change_data(change, project) for change in self.changes[:MAX_LISTED]])
 
     def kept(self) -> "ReloadReport":
-        """Return a copy without the files and the project, to be kept."""
+        """Return a copy without the files and the project, which use much memory."""
         validation = self.validation and self.validation.kept()
         return replace(self, validation=validation)
 

@@ -26,9 +26,9 @@ class Restored(NamedTuple):
     paths: tuple[str, ...] = ()
     """The changed paths."""
     kept: str = ""
-    """The folder with their newer versions."""
+    """The folder with the newer versions of these paths."""
     trouble: str = ""
-    """Why nothing was done; empty if it was."""
+    """Why nothing was restored; empty if there was no error."""
 
     def lines(self) -> list[str]:
         """Return a sentence for each file, for a person."""
@@ -93,9 +93,10 @@ def _new_folder(kept: Path) -> Path:
 
 
 def _replace(root: Path, wanted: Mapping[str, bytes | None], there: Mapping[str, bytes]) -> None:
-    """Write the files to the folder, and delete those that are None; if one fails, restore all. Raises OSError.
+    """Write the `wanted` files to the folder, and delete those that are None.
 
-    Each is first written under another name, so that a full disk is noticed before anything is replaced.
+    If one fails, all are restored from `there`, and OSError is raised. Each file is first written under another name,
+    so that a full disk is noticed before any file is replaced.
     """
     files = {path: on_disk(root, path) for path in wanted}
     drafts, done = dict[str, Path](), list[str]()

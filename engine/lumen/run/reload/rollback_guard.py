@@ -52,9 +52,9 @@ class RollbackGuard:
         return None if self._until is None else max(0.0, round(self._until - now, 3))
 
     def rescue(self, error: Exception) -> Sequence[Command] | None:
-        """Restore the good bundle if the failed one is on probation.
+        """Restore the good bundle if the failed bundle is on probation.
 
-        Return the commands of the change; None without a probation.
+        Return the commands of the change; None without a probation, or if the failed bundle is the good one.
         """
         bad = self._behavior.loop.project
         if self._until is None or self.good.hash == bad.hash:

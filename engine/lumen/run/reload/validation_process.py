@@ -25,7 +25,10 @@ class EnoughError(Exception):
 
 
 def failure(project: Project, story: str, seconds: float) -> "Rehearsal | None":
-    """Return how a story fails with a project; None if it does not fail within `seconds` [s] of real time."""
+    """Return how a story fails with a project.
+
+    Return None if the story does not fail, or takes more than `seconds` [s] of real time.
+    """
     from lumen.run.rehearsal import rehearse  # half of this process's imports, needed only for stories
 
     until = time.perf_counter() + seconds

@@ -55,11 +55,11 @@ class FileJudge(Protocol):
         """
 
     def close(self) -> None:
-        """Release its resources."""
+        """Release the resources of the checker."""
 
 
 class ValidationWorker:
-    """A `FileJudge` in another process: the idle one that was kept, else a new one on first use.
+    """A `FileJudge` in another process: the idle process that was kept, else a new one on first use.
 
     A process that died is started again.
     """

@@ -35,19 +35,19 @@ class Validation:
     saved: SavedFiles
     """The files that were checked."""
     hash: str
-    """Their hash; empty if the check failed before it was known."""
+    """The hash of these files; empty if the check failed before the hash was known."""
     project: Project | None = None
-    """Their bundle; None if they have errors."""
+    """The bundle of these files; None if they have errors."""
     diagnostics: tuple[Diagnostic, ...] = ()
     """The findings of lint."""
     running: Project | None = None
-    """The bundle that ran when they were checked; None if the check did not get so far."""
+    """The bundle that ran during the check; None if the check did not get so far."""
     changes: tuple[Change, ...] = ()
     """The changes from `running`."""
     failed: tuple[Rehearsal, ...] = ()
-    """The stories that were saved with them and fail."""
+    """The stories that were saved together with these files and fail."""
     fault: str = ""
-    """An internal error in words; empty if there was none."""
+    """A fault that prevented the check, in words; empty if there was none."""
     loading: float = 0.0
     """The time for loading [s]."""
     playing: float = 0.0
@@ -141,7 +141,8 @@ class BundleValidator:
     def advise(self, validation: Validation, urgent: Callable[[], bool]) -> list[Rehearsal]:
         """Return the failures of other stories of the changed behaviours.
 
-        It stops when `urgent` returns True or the time is used up. It is empty if other files were loaded since.
+        The check stops when `urgent` returns True or the time is used up. The result is empty if other files were
+        loaded since.
         """
         if not validation.good or validation.project is None:
             return []

@@ -32,7 +32,7 @@ class VisitsCheck:
     complete: bool = True
     """Whether all visits were played within `budget`."""
     trouble: str = ""
-    """Why the check failed; empty if it did not."""
+    """Why the check failed; empty if it succeeded."""
 
     @property
     def objects(self) -> bool:
@@ -40,7 +40,7 @@ class VisitsCheck:
         return self.mode == "refuse" and bool(self.report.differ)
 
     def lines(self) -> Iterator[str]:
-        """Yield the lines for people; none if no visit is kept."""
+        """Yield the lines for people; none if no visit is recorded."""
         report = self.report
         if self.trouble:
             yield f"the recorded visits were not played with these files: {self.trouble}"
@@ -78,9 +78,10 @@ class VisitsCheck:
 
 
 def check_visits(root: Path, new: Project, running: str, budget: float) -> VisitsCheck:
-    """Play the recorded visits of the project in `root` with other files, for at most `budget` [s]; return the result.
+    """Play the recorded visits of the project in `root` with the files of `new`; return the result.
 
-    Differences that the files of the bundle `running` make as well do not count.
+    Visits are played for at most `budget` [s]. Differences that the files of the bundle `running` also cause do not
+    count.
     """
     from lumen.journal.journal_folder import JOURNAL_FOLDER, JournalFolder
     from lumen.project.home import home_of

@@ -53,7 +53,7 @@ class KeptBundles:
         return as_robot(files, self.robot) if files else None
 
     def machine(self, hash: str, behavior: str) -> MachineDefinition | None:
-        """Return the machine of `project`, else None."""
+        """Return the machine of the project of a hash, set to that behaviour; None if `project` returns None."""
         project = self.project(hash, behavior)
         return project.machine if project else None
 
@@ -81,8 +81,8 @@ class ChosenJournal(NamedTuple):
 def chosen(root: Path, word: str | None, *, all: bool = False, robot: str = "") -> ChosenJournal:
     """Return the journal in `root` that a word means: a file, `today`, `yesterday`, or a day such as `2026-11-23`.
 
-    Without a word it is the last run, which may be a story; `all` means every recorded visit. Raises UsageError if
-    there is no such journal, JournalError if the file is unreadable.
+    Without a word, return the journal of the last run, which may be a story; with `all`, that of every recorded visit.
+    Raises UsageError if there is no such journal, JournalError if the file is unreadable.
     """
     folder = home_of(root, robot) / JOURNAL_FOLDER
     if word and (word.endswith(JOURNAL_SUFFIX) or "/" in word):

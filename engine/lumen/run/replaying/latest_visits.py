@@ -1,4 +1,4 @@
-"""The visits of a journal from the newest to the oldest; only as much of it is read as is used."""
+"""The visits of a journal from the newest to the oldest; files are read only when their visits are used."""
 
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
@@ -14,9 +14,10 @@ from lumen.run.replaying.other_files import with_machines
 
 
 def latest_first(files: Sequence[Path], bundles: KeptBundles) -> Iterator[RecordedVisit]:
-    """Yield the visits in these files of one journal, given in order; an unreadable file has none.
+    """Yield the visits in these files of one journal, the newest first; an unreadable file has none.
 
-    A visit that continues in the next file is completed from it, and belongs to the file in which it begins.
+    The files are given in order. A visit that continues in the next file is completed from that file, and belongs to
+    the file in which it begins.
     """
     for number in reversed(range(len(files))):
         entries = _entries(files[number])
@@ -36,6 +37,6 @@ def _entries(file: Path) -> tuple[RecordedEntry, ...]:
 
 
 def _goes_on(entries: Sequence[RecordedEntry], visit: RecordedVisit) -> bool:
-    """Return whether a visit began in the file before; each file begins with a keyframe."""
+    """Return whether a visit began in the previous file: it then begins at the keyframe that begins this file."""
     first = entries[0]
     return isinstance(first, JournalJump) and first.kind == "keyframe" and visit.first == first.position

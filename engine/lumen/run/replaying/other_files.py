@@ -87,7 +87,7 @@ class VisitPlayer:
 
 
 def _staged_like(old: Project, new: Project) -> Project:
-    """Return the other files with the behaviour that ran then."""
+    """Return `new` with the behaviour that ran in `old`."""
     return new if new.behavior == old.behavior else replace(new, behavior=old.behavior)
 
 
@@ -110,7 +110,7 @@ _KNOWN = {row.command for row in COMMANDS}
 def with_machines(
     entries: Iterable[RecordedEntry], bundles: KeptBundles
 ) -> Iterator[tuple[RecordedEntry, MachineDefinition | None]]:
-    """Yield each entry with the machine that ran then; None if its files were not stored."""
+    """Yield each entry with the machine that ran then; None if the machine's files were not stored."""
     machine: MachineDefinition | None = None
     for entry in entries:
         if isinstance(entry, JournalJump):

@@ -26,7 +26,7 @@ class ReplayDifference(NamedTuple):
     how: str = "differs"
     """`differs`, or with other files `says something else` or `ends elsewhere`."""
     place: str = ""
-    """The file and line of the new text; empty if unknown."""
+    """The file and line of the text said in the replay; empty if unknown."""
 
     def to_json(self) -> dict[str, Any]:
         """Return the difference as JSON data."""
@@ -36,7 +36,7 @@ class ReplayDifference(NamedTuple):
 
 @dataclass
 class ReplayReport:
-    """Counts of visits and steps, and their differences."""
+    """The counts of visits and steps in a replay, and the differences."""
 
     visits: int = 0
     """The number of visits."""

@@ -21,7 +21,7 @@ VISITS = 20
 ENTRIES = 5_000
 """The number of entries after which a task of steps ends, at the next jump."""
 NEW = "new"
-"""The name of the other files among the bundles."""
+"""The name of the other files among the bundles of a kit."""
 
 Row = tuple[RecordedEntry, MachineDefinition | None]
 
@@ -112,8 +112,8 @@ class _KitBundles(KeptBundles):
 def _parts(rows: Iterable[Row]) -> Iterator[tuple[list[RecordedEntry], list[Row]]]:
     """Yield the journal in parts, cut at jumps, which have a snapshot; a part is compared up to its last jump.
 
-    That jump is also the lead of the next part, whose steps continue from it. Each part comes after its lead, a list of
-    one entry or none.
+    That jump is also the lead of the next part, whose steps continue from it. A part is a list of rows, preceded by its
+    lead: a list of one entry or none.
     """
     lead, part = list[RecordedEntry](), list[Row]()
     for row in rows:

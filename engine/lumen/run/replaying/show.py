@@ -16,9 +16,9 @@ LEAD_IN = 1.0
 
 
 def show(entries: Iterable[RecordedEntry], bundles: KeptBundles, setup: Setup, narrator: Narrator) -> None:
-    """Take all steps again, narrate them, and let the robot perform their commands; its answers are ignored.
+    """Take all steps again, narrate them, and let the robot perform their commands.
 
-    Pauses between runs are skipped.
+    The robot's answers are ignored. Pauses between runs are skipped.
     """
     replayer = Replayer(bundles.machine)
     performer = Performer(setup.robot, MemoryBus(), lambda _: None)

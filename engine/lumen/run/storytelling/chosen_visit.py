@@ -27,8 +27,8 @@ class ChosenVisit(NamedTuple):
 def chosen_visit(journal: ChosenJournal, bundles: KeptBundles, at: str | None) -> ChosenVisit:
     """Return the visit that was under way at a time of day; the last visit if `at` is None.
 
-    `14:03` means any time in that minute. Raises UsageError, naming the nearest visit, if none was under way then; also
-    if a visitor in it was forgotten.
+    `14:03` means any time in that minute. Raises UsageError, naming the nearest visit, if no visit was under way then;
+    also if a visitor in it was forgotten.
     """
     entries, clock = list(journal.entries()), JournalClock()
     for entry in entries:

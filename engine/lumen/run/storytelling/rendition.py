@@ -23,7 +23,7 @@ class TickNotes:
     at: float
     """The time of the tick [s]."""
     active: frozenset[str] = frozenset()
-    """The states that are active at its end."""
+    """The states that are active at the end of the tick."""
     entered: list[str] = field(default_factory=list)
     """The states that were entered."""
     said: list[str] = field(default_factory=list)

@@ -28,7 +28,7 @@ from lumen.language.stories import (
 
 HEAD = "# yaml-language-server: $schema=../../schemas/story.schema.json"
 USUAL_WITHIN = 30.0
-"""The default of `within` [s], which is not written."""
+"""The default of `within` [s]; a story's text leaves it out."""
 
 
 def story_text(story: Story, remarks: list[str]) -> str:

@@ -49,7 +49,7 @@ class TimedAction(NamedTuple):
 def script(visit: RecordedVisit, project: Project, *, faces: bool) -> list[TimedAction]:
     """Return the visitor's actions in order.
 
-    With `faces` they include each seen face that changed something, else only arrivals and departures.
+    With `faces` the actions include each seen face that changed something, otherwise only arrivals and departures.
     """
     found = [row for entry in visit.inputs if entry.how == "heard" for row in _done(entry, project, faces=faces)]
     found += _answers(visit)
@@ -62,7 +62,7 @@ def broken(visit: RecordedVisit, verbs: Collection[str], *, hanging: bool, lasti
     """Return the robot's faults for `robot:` of a story: verbs that always failed.
 
     `verbs` are those that features and the project add. With `hanging` the result includes verbs that never ended, with
-    `lasting` the shortest duration of its speech [s].
+    `lasting` the shortest duration of the robot's speech [s].
     """
     begun = dict[str, tuple[str, float]]()
     kinds = dict[str, list[tuple[str, float]]]()
@@ -132,7 +132,10 @@ def _action(event: Event, project: Project) -> VisitorAction:
 
 
 def _answers(visit: RecordedVisit) -> Iterator[TimedAction]:
-    """Yield the answers of the module `answers`, at their beginnings; those from passages are found again anyway."""
+    """Yield the answers of the module `answers`, at their beginnings.
+
+    Answers from passages are left out, because the story finds them again.
+    """
     began = dict[str, float]()
     said = dict[str, list[str]]()
     for entry in visit.inputs:
@@ -156,7 +159,7 @@ def _is_face(event: Event, project: Project) -> bool:
 
 
 def _walks(seen: Sequence[float], visit: RecordedVisit) -> Iterator[TimedAction]:
-    """Yield an arrival when a face appears, and a departure in time before it is gone."""
+    """Yield an arrival when a face appears, and a departure so early that the visitor is gone when the face is."""
     away = APPROACH_DISTANCE / VISITOR_SPEED
     if not seen:
         return

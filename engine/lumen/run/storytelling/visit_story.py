@@ -28,7 +28,7 @@ TRIES = 20
 """The number of unmet expectations that are left out before the story is given up."""
 
 Renamed = Callable[[Any], Any]
-"""A function that replaces names in data."""
+"""A function that returns data with names replaced."""
 
 
 class _Way(NamedTuple):
@@ -54,11 +54,11 @@ class VisitStory:
 
     story: Story
     same: bool
-    """Whether the robot says and does the same as in the visit."""
+    """Whether the robot's observable actions in the story are those of the visit."""
     was: str = ""
     """The first action of the robot that differs, as recorded."""
     now: str = ""
-    """The robot's action in the story instead."""
+    """The robot's action in the story at that point."""
 
 
 def visit_story(
@@ -129,7 +129,10 @@ def _clock(stands: Snapshot, visit: RecordedVisit) -> Schedule:
 
 
 def _draft(acts: Sequence[TimedAction], visit: RecordedVisit, *, clocked: bool) -> Iterator[StoryStep]:
-    """Yield the actions, each at its delay after the robot's last one, or with `clocked` after the previous action."""
+    """Yield the actions, each at the recorded delay after the robot's last one.
+
+    With `clocked` the delay counts from the previous action.
+    """
     assert visit.home is not None
     last = max(visit.home.at, visit.inputs[0].event.at - LEAD)
     for row in acts:
@@ -156,9 +159,9 @@ def _alike(was: Sequence[str], now: Sequence[str]) -> int:
 
 
 def _checked(project: Project, draft: Story, rendition: Rendition, acts: Sequence[VisitorAction]) -> Story:
-    """Return the story with the observations as expectations, without those that are not met at their time.
+    """Return the story with the observations as expectations, without expectations that are not met in time.
 
-    Raises UsageError if its events do not repeat.
+    Raises UsageError if the events of the story do not repeat.
     """
     approved = [step for step in draft.steps if isinstance(step.action, SetAutonomy)]
     left_out = set[int]()

@@ -34,8 +34,8 @@ def cluster_address(text: str) -> str:
 def cluster(address: str, packed: bytes) -> Iterator[tuple[Executor, Any]]:
     """Connect to a cluster; yield its executor, and a handle to pass to tasks in place of `packed`.
 
-    Raises WorkersError if no scheduler answers, it has no workers, or Lumen is missing there; CancelledError if the
-    scheduler is lost during the work.
+    Raises WorkersError if no scheduler answers, the cluster has no workers, or Lumen is missing on one of them;
+    CancelledError if the scheduler is lost during the work.
     """
     distributed: Any = import_module("distributed")
     shown = address.replace("tcp://", SCHEME)

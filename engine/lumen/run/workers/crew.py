@@ -51,7 +51,7 @@ class Staff(NamedTuple):
 
 
 class StaffedCrew:
-    """The workers of an executor; `staff` opens one, also as a replacement if workers are lost.
+    """The workers of an executor; `staff` opens an executor, also as a replacement if workers are lost.
 
     Raises WorkersError with `trouble` and `remedy` if a round loses its workers twice.
     """
@@ -77,7 +77,7 @@ class StaffedCrew:
 
 
 class _Work:
-    """Tasks that are submitted to an executor, some at a time; `left` are those without a result."""
+    """Tasks that are submitted to an executor, IN_FLIGHT at a time; `left` has the tasks without a result."""
 
     def __init__(self, staff: Staff) -> None:
         self._staff = staff
@@ -86,7 +86,7 @@ class _Work:
         self.left: dict[int, tuple[Any, ...]] = {}
 
     def done(self, tasks: Iterator[tuple[int, tuple[Any, ...]]]) -> Iterator[tuple[int, Any]]:
-        """Yield the results as they arrive; after a loss of workers no further task is submitted."""
+        """Yield the results as they arrive; after a loss of workers, no further task is submitted."""
         while True:
             self._give(islice(tasks, 0 if self._broken else IN_FLIGHT - len(self._futures)))
             if not self._futures:

@@ -1,4 +1,4 @@
-"""Processes of this machine as an executor; however it ends, no process or folder is left."""
+"""Processes of this machine as an executor; whatever ends the executor, no process or folder is left."""
 
 import os
 import shutil
@@ -23,7 +23,7 @@ TERMINATED = 128 + signal.SIGTERM
 def local_pool(count: int, folder: Path) -> Iterator[Executor]:
     """Start `count` processes; an exception kills them without waiting for their tasks.
 
-    They end with this process, even if it is killed, and then delete `folder`.
+    The processes end with this one, even if it is killed, and then delete `folder`.
     """
     before = set(active_children())
     pool = ProcessPoolExecutor(count, get_context("spawn"), _begin, (str(folder),))
@@ -77,7 +77,7 @@ def _terminate(number: int, frame: FrameType | None) -> NoReturn:
 
 
 def _begin(folder: str) -> None:
-    """Prepare a worker: Ctrl-C ends it without output, and it ends with its parent."""
+    """Prepare a worker: Ctrl-C ends it without output, and it ends with its parent process."""
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     if hasattr(signal, "pthread_sigmask"):

@@ -28,7 +28,7 @@ class WorkKit:
     """The files that tasks need; their paths are relative to the project's root."""
 
     bundles: Mapping[str, Mapping[str, bytes]]
-    """The files of each bundle, by its name."""
+    """The files of each bundle, by the name of the bundle."""
     meshes: Mapping[str, bytes]
     """The files of the models, which the simulation opens itself."""
 
@@ -87,7 +87,7 @@ PACKAGES = ("lumen-robot", "mujoco", "dm-control", "numpy")
 """The packages on which results depend, besides Python."""
 
 _alone = threading.Lock()
-"""A cluster's worker may have several threads, but the simulation's compiler supports only one."""
+"""Held while a task runs: a cluster's worker may have several threads, but the simulation's compiler supports one."""
 
 
 class TaskHead(NamedTuple):
@@ -125,7 +125,7 @@ def _unpacked(head: TaskHead, packed: bytes | str) -> UnpackedKit:
 
 @cache
 def _own_folder() -> str:
-    """Return a new folder within that of the cluster's worker, which deletes it at its end."""
+    """Return a new folder inside the folder of the cluster's worker, which deletes it when the worker ends."""
     from distributed import get_worker
 
     return tempfile.mkdtemp(prefix="lumen-", dir=get_worker().local_directory)

@@ -33,11 +33,11 @@ class Workers:
     def results(
         self, function: Callable[..., Result], kit: WorkKit, tasks: Iterable[tuple[Any, ...]]
     ) -> Generator[tuple[int, Result], None, None]:
-        """Yield the number of each task and the result of `function(kit, *task)`; close it to end the work.
+        """Yield the number of each task and the result of `function(kit, *task)`; close the generator to end the work.
 
         `function` is defined in a module and depends on nothing else. Tasks are drawn only when a worker is free. The
-        tasks of lost workers are repeated once, by new ones. Raises WorkersError if workers are lost again or can't be
-        reached, and any error of a task.
+        tasks of lost workers are repeated once, by new workers. Raises WorkersError if workers are lost again or can't
+        be reached, and any error of a task.
         """
         waiting = iter(tasks)
         first = list(islice(waiting, self.count if not self.address else 1))
@@ -46,7 +46,7 @@ class Workers:
 
     @contextmanager
     def crew(self, function: Callable[..., Result], kit: WorkKit, most: int) -> Iterator[Crew]:
-        """Open a crew that performs rounds of such tasks, at most `most` at a time, until the context ends."""
+        """Open a crew that performs rounds of tasks, at most `most` at a time, until the context ends."""
         with working_folder() as folder, ExitStack() as staffed:
             if not self.address and min(self.count, most) <= 1:
                 own = UnpackedKit(kit, "kit", folder)
