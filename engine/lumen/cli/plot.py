@@ -31,9 +31,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Draw the file to a .png or .svg and print its path; return 0.
+    """Draw the file to a .png or .svg and print the path of the drawing; return 0.
 
-    Raises UsageError if it can't be read or written.
+    Raises UsageError if the file can't be read or the drawing can't be written.
     """
     path = _found(options.file)
     output = options.output or Path(f"{path.stem}.png")

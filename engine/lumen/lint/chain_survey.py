@@ -111,7 +111,7 @@ class ChainSurvey:
         return self._left[path]
 
     def domain(self, transition: Transition) -> str:
-        """Return the state within which a transition leaves and enters states (`transition_domain`)."""
+        """Return the path of the state within which a transition leaves and enters states (`transition_domain`)."""
         if id(transition) not in self._domains:
             self._domains[id(transition)] = transition_domain(self.machine, transition)
         return self._domains[id(transition)]
@@ -125,9 +125,10 @@ class ChainSurvey:
 
 
 def transition_domain(machine: MachineDefinition, transition: Transition) -> str:
-    """Return the innermost compound state around a transition's source and targets, which it does not leave.
+    """Return the path of the innermost compound state around a transition's source and targets.
 
-    This is the domain of the transition (`getTransitionDomain` in SCXML).
+    The transition does not leave this state, its domain (`getTransitionDomain` in SCXML). The path is empty for the
+    whole machine.
     """
     path = transition.source
     if transition.reenter:

@@ -172,7 +172,7 @@ class _Ways:
         return self._entered[state.path]
 
     def _walks(self, path: str) -> bool:
-        """Return whether anything in a state may make the robot walk."""
+        """Return whether an action or an invoked behaviour in a state may make the robot walk."""
         state = self._machine.states[path]
         blocks = (state.entry, state.do, state.exit, *(t.actions for t in state.transitions))
         return (

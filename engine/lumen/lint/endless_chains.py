@@ -15,7 +15,7 @@ ENDLESS_CHAIN = Code("endless-chain", "statecharts", WARNING, "transitions loop 
 
 
 MAX_STEPS_TO_REST = 20
-"""The greatest number of steps that are followed from the entry of a state to a rest; else it counts as left."""
+"""The number of steps within which a state must come to rest after its entry; otherwise it counts as left."""
 
 MAX_SHOWN_TRANSITIONS = 6
 """The greatest number of transitions of a chain that its message names."""

@@ -30,7 +30,7 @@ BOOLEAN_SCHEMA: Mapping[str, Any] = {"type": "boolean"}
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report everything that is wrong with the expressions of every behaviour."""
+    """Report faults in the names and types of the expressions of every behaviour."""
     for name, machine in draft.behaviors.items():
         report = draft.report("behaviors", name)
         _Expressions(draft, name, machine, report).check()

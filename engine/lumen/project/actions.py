@@ -37,7 +37,7 @@ ONLY_IN_DO = Code("only-in-do", "statecharts", ERROR, "a verb that waits is used
 
 
 class Actions:
-    """Reads the actions of one document; `units` are those that its file declares, `verbs` those of the project."""
+    """Reads the actions of one document; `units` are declared in its file, `verbs` in the project."""
 
     def __init__(
         self,

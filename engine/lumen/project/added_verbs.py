@@ -28,7 +28,10 @@ class OwnVerbs:
 
     rows: Mapping[str, VerbRow] = field(default_factory=dict, compare=False)
     hash: str = ""
-    """The hash of those files. Values with the same hash are equal, so results derived from them can be cached."""
+    """The hash of the files with verbs.
+
+    Values with the same hash are equal, so results derived from them can be cached.
+    """
 
     @property
     def all(self) -> Mapping[str, VerbRow]:
@@ -85,7 +88,7 @@ def time_taken(command: Do) -> float:
 
 
 def _duration(row: VerbRow, names: Iterable[str]) -> Callable[[Scope], str] | None:
-    """Return the function that computes the text of `takes` from arguments of these names; None if it is fixed."""
+    """Return the function that computes the text of `takes` from arguments of these names; None if it has no holes."""
     parts = split_template(row.takes)
     variables = {name: f"context.{name}" for name in names}
     if all(isinstance(part, str) for part in parts):

@@ -183,7 +183,7 @@ class _Builder:
         )
 
     def initial(self, entry: OutlinedState) -> tuple[str, ...]:
-        """Return the paths that are entered by default: those that the file names, else the first child."""
+        """Return the paths that are entered by default: those under `initial` or `target`, else the first child."""
         if entry.path not in self.beginnings:
             self.beginnings[entry.path] = (
                 self.remembered(entry) if entry.kind is StateKind.HISTORY else self.begin(entry)
@@ -239,7 +239,10 @@ class _Builder:
         return found.path if found else ""
 
     def renamed(self, was: str) -> str:
-        """Return the present name of an entry under `renamed`, after all renames; if none, report it and return ""."""
+        """Return the present name of an entry under `renamed`, after all renames.
+
+        If no state or key has that name, report it and return an empty string.
+        """
         table: Mapping[str, str] = self.data["renamed"]
         seen, now = {was}, table[was]
         while not (found := self.known(now)) and now in table and now not in seen:

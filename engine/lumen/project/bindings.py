@@ -37,7 +37,7 @@ DEEDS = ("joint", "volume", "message", "context", "event")
 
 
 class BindingFault(NamedTuple):
-    """A fault of an output's binding. The message continues a sentence that begins with the output's name."""
+    """A fault of an output's binding; the message continues a sentence that begins with the output's name."""
 
     code: Code
     message: str
@@ -98,7 +98,10 @@ UNBOUND_INPUT = Code("unbound-input", "controllers", ERROR, "an input of a bound
 
 
 class Bindings:
-    """Reads `bind:` of one file, whose unit of angles is `angle` [rad]. Without `bind:`, variables need no binding."""
+    """Reads `bind:` of one file, whose unit of angles is `angle` [rad].
+
+    In a file without `bind:`, variables need no binding.
+    """
 
     def __init__(
         self, data: Mapping[str, Any], report: DocumentReport, outputs: Mapping[str, Variable], angle: float
@@ -171,7 +174,7 @@ class Bindings:
         yield OutputBinding(variable.name, spec["joint"], float(spec.get("gain", 1.0)), low, high, unit, path)
 
     def known(self, side: str, name: str) -> bool:
-        """Return True if a bound variable exists; report it if it does not."""
+        """Return True if a bound variable exists; otherwise report the name and return False."""
         if name in self.data[side]:
             return True
         hint = did_you_mean(name, self.data[side], f"the {side} are")

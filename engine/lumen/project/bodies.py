@@ -51,7 +51,7 @@ BIPED_POSTURE = "Crouch"
 """The posture in which a two-legged robot may turn its motors off without falling."""
 
 BODY_PARTS = ("head", "arms", "legs", "body")
-"""The parts of every body; a part that a body lacks has no joints."""
+"""The parts of every body; a part that is missing in a robot has no joints."""
 
 POSTURE_TOLERANCE = 2e-3
 """The maximum distance of a posture beyond a joint's limit [rad]; published postures are rounded."""
@@ -70,10 +70,10 @@ def build_body(data: Any, report: DocumentReport, *, name: str) -> Body | None:
 def build_likes(
     bodies: Mapping[str, Body], sources: Mapping[str, tuple[Any, DocumentReport]], names: Collection[str]
 ) -> dict[str, Body]:
-    """Return all these bodies and those that are `like` one of them.
+    """Return the given bodies, and those that are `like` one of them.
 
     `sources` are the data and the report of each model's file. `names` are the names of all models, including
-    unreadable ones, so that a reference to one of those is not reported.
+    unreadable ones, so that a reference to an unreadable model is not reported.
     """
     found = dict(bodies)
     for name, (data, report) in sources.items():
@@ -167,7 +167,7 @@ class _Builder:
         return Joint(name, low * unit, high * unit, spec.get("speed", inf) * unit, spec.get("effort", inf))
 
     def known(self, name: str, path: NodePath) -> bool:
-        """Return True if a joint exists and could be read; report it if it does not exist."""
+        """Return True if a joint exists and could be read; report the name if there is no such joint."""
         if name in self.joints:
             return True
         if name not in self.data["joints"]:

@@ -89,7 +89,7 @@ _BRACKETS = {"[": "]", "{": "}", "(": ")"}
 
 
 def _closing_bracket(text: str, start: int, end: int) -> int:
-    """Return the index of the bracket that closes the first one at or after `start`; -1 if none does."""
+    """Return the index of the bracket that closes the first one at or after `start`; -1 if none closes it."""
     waiting: list[str] = []
     for at in range(start, end):
         if text[at] in _BRACKETS:

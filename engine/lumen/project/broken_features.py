@@ -96,7 +96,7 @@ def faults_reported(feature: Feature, what: str, findings: list[Diagnostic]) -> 
 
 @contextmanager
 def faults_named(fault: Callable[[str], LumenError], method: str) -> Iterator[None]:
-    """Run a method of an object that a package made; raise an error that names the package for any fault of it.
+    """Run a method of an object that a package made; raise an error that names the package for any fault of the method.
 
     `fault` makes the error, from words such as "raised KeyError: 3 from `send`". LumenErrors are not caught.
     """

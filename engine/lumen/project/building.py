@@ -88,9 +88,9 @@ T = TypeVar("T")
 
 
 def draft(files: Mapping[str, bytes]) -> ProjectDraft:
-    """Return all that can be built from these files, with the findings.
+    """Return a draft with everything that can be built from these files, and the findings.
 
-    The result depends only on them and on the installed software. No content of a file raises an error.
+    The result depends only on the files and on the installed software. No content of a file raises an error.
     """
     files = with_common_words(files)
     found = ProjectDraft(files)
@@ -140,7 +140,7 @@ def draft(files: Mapping[str, bytes]) -> ProjectDraft:
 
 
 def _judge(found: ProjectDraft) -> None:
-    """Set for each file whether it was built whole: nothing of it was left out, and it has no error."""
+    """Set for each file whether it was built whole: no part was left out, and the file has no error."""
     torn = {d.place.file for d in found.loose if d.severity is Severity.ERROR}
     for file, report in found.reports.items():
         report.whole = not (report.pruned or file in torn or has_errors(report.diagnostics))
@@ -230,7 +230,7 @@ def _main(found: ProjectDraft, content: bytes, robot: str) -> BuiltFile[Settings
 
 
 def _wanted(settings: Settings, models: Mapping[str, BuiltFile[Body]]) -> Iterator[str]:
-    """Yield the name of the robot's model, and those that the project's own models are based on."""
+    """Yield the name of the robot's model, and the names of models on which the project's own models are based."""
     yield settings.model
     for file in models.values():
         if isinstance(file.data, Mapping):
@@ -326,7 +326,7 @@ def _each(
 
 
 def _built(files: Mapping[str, BuiltFile[T]]) -> dict[str, T]:
-    """Return the values built from these files, without files that held too little to build one."""
+    """Return the values built from these files, without files that contained too little to build a value."""
     return {name: file.built for name, file in files.items() if file.built is not None}
 
 
@@ -418,9 +418,9 @@ def _accompany(found: ProjectDraft) -> None:
 def _with_own(
     found: ProjectDraft, folder: str, shared: str, build: Build[T], body: Body
 ) -> tuple[dict[str, T], frozenset[str]]:
-    """Return what the robot's own folder describes, and what only the folder for all robots describes.
+    """Return all styles or gestures by name; those in the robot's own folder replace those for all robots.
 
-    The second value is the set of names from the robot's own folder.
+    The second value is the set of names in the robot's own folder.
     """
     own = _built(_each(found, folder, build, around=body))
     replaced = {file: found.files[file] for name in own if (file := f"{shared}/{name}.yaml") in found.files}

@@ -18,7 +18,7 @@ B = TypeVar("B", covariant=True)
 
 
 class Build(Protocol[B]):
-    """Builds a value from a document's checked data and reports the data's faults; None if no value can be built."""
+    """Builds a value from a document's checked data, and reports faults in the data; returns None if that fails."""
 
     def __call__(self, data: Any, report: DocumentReport, *, name: str) -> B | None: ...
 

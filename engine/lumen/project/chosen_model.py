@@ -12,7 +12,7 @@ MODEL_VARIABLE = "LUMEN_MODEL"
 
 
 def choice() -> Mapping[str, bytes]:
-    """Return the choice as a file by its name; empty if no model was chosen."""
+    """Return the choice as a file, by the file's name; empty if no model was chosen."""
     name = os.environ.get(MODEL_VARIABLE, "")
     return {CHOSEN_MODEL: name.encode("utf-8", "surrogateescape")} if name else {}
 

@@ -10,10 +10,10 @@ CHOSEN_ROBOT = ".robot"
 
 
 def as_robot(files: Mapping[str, bytes], robot: str) -> dict[str, bytes]:
-    """Return the files with the choice of that robot added; unchanged if the name is empty."""
+    """Return the files with the choice of `robot` added; unchanged if the name is empty."""
     return {**files, CHOSEN_ROBOT: robot.encode()} if robot else dict(files)
 
 
 def chosen_robot(files: Mapping[str, bytes]) -> str:
-    """Return the name of the robot that these files are read for; empty for the first."""
+    """Return the name of the robot for which these files are read; empty for the first robot."""
     return files.get(CHOSEN_ROBOT, b"").decode("utf-8", "replace").strip()

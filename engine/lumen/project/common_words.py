@@ -1,7 +1,7 @@
 """The words that come with Lumen: `words: [common]`, and the word lists that every `hears` uses.
 
-They are added as one more file to a project that uses them and has no `behaviors/words/common.yaml` of its own. So they
-are hashed, kept in bundles and replayed like any other file.
+They are added as one more file to a project that uses them and has no `behaviors/words/common.yaml` of its own. That
+file is then hashed, kept in bundles and replayed like any other.
 """
 
 import re

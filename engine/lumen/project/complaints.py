@@ -31,7 +31,7 @@ class Complaint:
     message: str
     hint: str
     about: NodePath
-    """The node that the finding concerns."""
+    """The node with the fault, which may be another than the one where it is shown."""
     doomed: NodePath | None
     """The node that must be left out because of the fault; None if all can stay."""
     key: bool = False
@@ -39,7 +39,7 @@ class Complaint:
     missing: str = ""
     """The key that is absent; empty for other findings."""
     suggestion: str = ""
-    """The key that was probably meant by an unknown one; empty without a similar key."""
+    """The known key that was probably meant by an unknown key; empty if none is similar."""
 
 
 def complaints(error: Error, root: Any = None) -> Iterator[Complaint]:
@@ -71,10 +71,10 @@ def complaints(error: Error, root: Any = None) -> Iterator[Complaint]:
 
 
 def _misspelt_entry(error: Error, path: NodePath, root: Any) -> str:
-    """Return the known name that an entry's misspelt name was probably meant to be; empty if it is not misspelt.
+    """Return the known name that was probably meant by an entry's misspelt name; empty if the name is not misspelt.
 
     In `modules` of lumen.yaml, known names have keys of their own, and an entry of any other name needs a `command`. So
-    an entry that lacks the key, and whose name resembles a known one, is a misspelt one.
+    an entry that lacks that key, and whose name resembles a known one, is misspelt.
     """
     section = root.get("properties", {}).get(path[0]) if isinstance(root, Mapping) and len(path) == 2 else None
     known = section.get("properties", ()) if isinstance(section, Mapping) else ()
@@ -146,7 +146,7 @@ def _unknown_keys(error: Error, path: NodePath, root: Any) -> Iterator[Complaint
 
 
 def _torn(instance: Mapping[str, Any], key: str) -> str:
-    """Return the whole text if the key is its rest after a comma, as in `{say: Oh, step back}`; else an empty text."""
+    """Return the whole text if the key is the part after a comma, as in `{say: Oh, step back}`; else an empty one."""
     keys = list(instance)
     before = instance[keys[keys.index(key) - 1]] if keys.index(key) else None
     whole = isinstance(before, str) and instance[key] is None and " " in f"{before}{key}"
@@ -166,7 +166,7 @@ _ALSO = {
 
 
 def _owner(key: str, root: Any) -> str:
-    """Return the definition of the schema that has this key, with an article; empty if none has."""
+    """Return the definition of the schema that has this key, with an article; empty if no definition has the key."""
     definitions = root.get("$defs", {}) if isinstance(root, Mapping) else {}
     owner = next((name for name, schema in definitions.items() if key in schema.get("properties", ())), "")
     return f"an {owner}" if owner[:1] in tuple("aeiou") else f"a {owner}" if owner else ""
@@ -223,7 +223,7 @@ def _property(schema: Any, key: str) -> Any:
 
 
 def _likeliest(context: Iterable[Error]) -> list[Error]:
-    """Return the errors of the alternative that was probably meant: of the right type, with the deepest fault."""
+    """Return the errors of the alternative that was probably meant: of the value's type, with the deepest fault."""
     branches: dict[Any, list[Error]] = {}
     for error in context:
         branches.setdefault(error.relative_schema_path[0], []).append(error)

@@ -18,7 +18,7 @@ from lumen.robot.joint_ways import begun_from
 from lumen.robot.skill_runner import SkillRunner
 
 SHADOW = ""
-"""The id of the wrapped robot's commands in the executor of features' verbs, which they end or allow."""
+"""The id of the wrapped robot's commands in the executor of features' verbs: these end verbs, or let them begin."""
 
 Ability = TypeVar("Ability")
 
@@ -26,9 +26,9 @@ Ability = TypeVar("Ability")
 class BoundedRobot(CheckedRobot):
     """Passes commands to `robot` within the limits and speeds of `body`; refuses those that `body` can't perform.
 
-    If the robot senses its joints, a motion is delayed until they can reach its first key in time. Verbs of features
-    are performed here unless the robot does that itself (`PerformsVerbs`): they wait for each other's parts of the
-    body, but not for parts that the wrapped robot moves. Rests and stops end them.
+    If the robot senses its joints, a motion is delayed until the joints can reach the first key in time. Verbs of
+    features are performed here unless the robot performs verbs itself (`PerformsVerbs`): they wait for each other's
+    parts of the body, but not for parts that the wrapped robot moves. Rests and stops end them.
     """
 
     def __init__(self, robot: Robot, body: Body, fault: Callable[[str], LumenError] = of_own_robot) -> None:
@@ -110,4 +110,4 @@ class _Nothing:
         return True
 
     def cancel(self) -> None:
-        """Do nothing, because it ends at once."""
+        """Do nothing, because the activity ends at once."""

@@ -196,7 +196,7 @@ def _judge(schema: str) -> JsonSchema:
 
 
 def check_arguments(command: Do) -> None:
-    """Raise BadCommandError if no feature or project has that verb, or its arguments do not fit its row."""
+    """Raise BadCommandError if no feature or project has the verb, or if the arguments do not fit the verb's row."""
     schema = argument_schema(added_verb(command))
     if _judge(json.dumps(schema)).fits(dict(command.arguments)):
         return

@@ -102,7 +102,10 @@ def _hand(p: CommandParameters, opening: float) -> Aim:
 
 
 def _move_toward(p: CommandParameters) -> Move:
-    """Return the walk at speeds that are fractions of the greatest, as in NAOqi; here that of the brisk pace."""
+    """Return the walk at the given fractions of the greatest speeds, as in NAOqi.
+
+    The greatest speeds are those of the brisk pace.
+    """
     from lumen.motion.gait import fastest_of  # imports numpy, which only this command needs
 
     given = p.number("x", 0.0), p.number("y", 0.0), p.turn()

@@ -87,12 +87,13 @@ class CommandReceiver:
 
     Messages may arrive on any thread; only `begin` uses the robot. Each sender gets an answer from `CommandReports`.
     Commands that stop the robot begin before all that arrived with them; those that arrived before a stop of everything
-    do not begin at all. At most as many commands wait for `begin` as their route keeps, and for at most its time to
-    live; those of the behaviour are counted separately. Commands that stop the robot are exempt from both limits.
+    do not begin at all. At most as many commands wait for `begin` as their route keeps, and for at most the route's
+    time to live; those of the behaviour are counted separately. Commands that stop the robot are exempt from both
+    limits.
 
-    A command with an `id` is performed once, however often its sender sends it; another one with that id is refused.
-    Commands that stop the robot are performed each time that they are sent, with any id; only a message that the bus
-    delivers a second time is not.
+    A command with an `id` is performed once, however often its sender sends it; another command with that id is
+    refused. Commands that stop the robot are performed each time that they are sent, with any id; only a message that
+    the bus delivers a second time is ignored.
 
     `clock` [s] measures the time that commands have waited. Commands that move the robot are refused while a person
     keeps it still (`hold`).
@@ -260,7 +261,10 @@ class CommandReceiver:
             self._take(arrival, overtaken=overtaken)
 
     def _take(self, arrival: _Arrival, *, overtaken: bool = False) -> None:
-        """Perform a message's command, or report why not; it is `overtaken` if a stop of everything came after it."""
+        """Perform a message's command, or report why not.
+
+        The command is `overtaken` if a stop of everything came after it.
+        """
         message = arrival.message
         record = CommandRecord(message, own_id(message.body), method_of(message.body), body=message.body)
         stopping = stops(message.body)
@@ -333,7 +337,10 @@ class CommandReceiver:
             listener.given(command, record.id)
 
     def _remembered(self, motion: MotionDefinition) -> MotionDefinition:
-        """Return the remembered motion that is equal: a brain in another process sends a motion with each play."""
+        """Return an equal motion that was received before; otherwise remember this one and return it.
+
+        A brain in another process sends the whole motion with each play.
+        """
         for known in self._motions:
             if known == motion:
                 return known

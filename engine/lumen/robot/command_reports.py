@@ -21,13 +21,13 @@ class CommandRecord:
     """A command from the bus."""
 
     asker: Message
-    """The message that brought it, or the last query about it."""
+    """The message with the command, or the last query about the command."""
     id: str = ""
     """The id from its sender; empty if the sender gave none, like the modules of 2015."""
     method: str = ""
-    """The method of its body in lower case; empty if unknown."""
+    """The method in the command's body, in lower case; empty if unknown."""
     at: str = ""
-    """The id under which the robot has the command; empty until then."""
+    """The id under which the robot has the command; empty until the robot has it."""
     state: str = ""
     """The last reported state, one of the constants above; empty before the first report."""
     reason: str = ""
@@ -39,7 +39,7 @@ class CommandRecord:
     takes: float = 0.0
     """The estimated duration of the command [s]."""
     body: Any = None
-    """The body of its message; None if only the id is known."""
+    """The body of the command's message; None if only the id is known."""
 
     @property
     def over(self) -> bool:
@@ -62,10 +62,10 @@ class CommandRecord:
 
 
 class CommandReports:
-    """Remembers the records of commands, and reports each change of one.
+    """Remembers the records of commands, and reports each change of a record.
 
-    `tell` publishes a report. `reply` answers the sender: with each report if the command has an id of the sender's,
-    else once at the end, with the text of 2015.
+    `tell` publishes a report. `reply` answers the sender: with each report if the sender gave the command an id,
+    otherwise once at the end, with the text of 2015.
     """
 
     def __init__(self, tell: Callable[[dict[str, Any]], None], reply: Callable[[Message, Any], None]) -> None:
@@ -79,7 +79,7 @@ class CommandReports:
         return len(self._running)
 
     def ahead(self, parts: frozenset[str]) -> float:
-        """Return the estimated time that commands under way or waiting occupy any of these parts of the body [s]."""
+        """Return the estimated total duration of the open commands that need any of these parts of the body [s]."""
         return sum(record.takes for record in self._running.values() if not parts.isdisjoint(record.parts))
 
     def find(self, id: str, sender: str) -> CommandRecord | None:
@@ -95,7 +95,7 @@ class CommandReports:
         return self.find(id, sender) or next(others, None)
 
     def remember(self, record: CommandRecord, sender: str | None) -> None:
-        """Remember a command, so that its sender gets a report if it comes again; any sender if `sender` is None."""
+        """Remember a command, to report on it if `sender` sends it again; None stands for any sender."""
         if record.id:
             self._known[sender, record.id] = record
             if len(self._known) > MAX_REMEMBERED_COMMANDS:

@@ -75,19 +75,19 @@ class CommandRow(Generic[C]):
     rank: int
     """The rank of the command: of those that wait, those of the lowest rank begin first."""
     kind: str
-    """The `type` of its body on the bus, spelt as in 2015 if the command existed then."""
+    """The `type` of the command's body on the bus, spelt as in 2015 if the command existed then."""
     method: str
-    """The `method` of its body."""
+    """The `method` of the command's body."""
     encode: Callable[[C], Mapping[str, Any]]
-    """Returns the `parameter` of its body."""
+    """Returns the `parameter` of the command's body."""
     decode: Callable[[CommandParameters], C]
     """Returns the command with the parameters of a body. Raises BadCommandError if they are invalid."""
     parts: Callable[[C, Body], frozenset[str]]
-    """Returns the parts of the body that it owns from its beginning to its end."""
+    """Returns the parts of the body that the command owns from its beginning to its end."""
     duration: Callable[[C], float] = lambda _: USUAL_DURATION
     """Returns how long the recording robot takes [s]."""
     channel: Channel | None = None
-    """The channel of the command `stop` that ends it, besides `all`; None if it has none."""
+    """The channel of the command `stop` that ends this command, besides `all`; None if there is none."""
     check: Callable[[C, Body], None] = lambda _command, _body: None
     """Raises BadCommandError for a command that no robot of that body can perform."""
     moves: bool = True

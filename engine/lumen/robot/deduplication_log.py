@@ -29,7 +29,7 @@ class BegunCommand(NamedTuple):
     id: str
     """The id that its sender gave the command."""
     sender: str | None = None
-    """The name of its sender; None in a file of an older version, which did not record it."""
+    """The name of the sender; None in a file of an older version, which did not record senders."""
 
 
 class DeduplicationLog:

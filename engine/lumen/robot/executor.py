@@ -202,7 +202,7 @@ class Executor:
                     self._end(kind, task, data)
 
     def _admit(self, now: float) -> None:
-        """Begin the commands whose parts are free; one that waits reserves its parts against those behind it."""
+        """Begin the commands whose parts are free; a waiting command reserves its parts against those behind it."""
         taken: set[str] = set().union(*(t.parts for t in self._tasks if t.activity))
         for task in self._tasks[:]:
             if task.activity is None:
@@ -230,12 +230,15 @@ class Executor:
         return self._skill(command, now)
 
     def _before(self, task: _Task) -> _Task | None:
-        """Return the `Move` under way that this one replaces without a stop in between; else None."""
+        """Return the `Move` under way that a new `Move` replaces without a stop in between; None for other commands."""
         moving = isinstance(task.command, Move)
         return next((t for t in self._tasks if moving and isinstance(t.command, Move) and t.going), None)
 
     def _displace(self, task: _Task) -> None:
-        """End each `Move` that blocks this command: it has no end of its own, so the command would wait for ever."""
+        """End each `Move` that blocks this command.
+
+        A `Move` has no end of its own, so the command would wait for ever.
+        """
         if not isinstance(task.command, Move):
             endless = (t for t in self._tasks if isinstance(t.command, Move) and not t.parts.isdisjoint(task.parts))
             for move in list(endless):

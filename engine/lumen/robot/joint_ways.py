@@ -55,7 +55,10 @@ def begun_from(motion: MotionDefinition, body: Body, here: Mapping[str, float]) 
 
 
 def _delay(motion: MotionDefinition, joint: str, here: Mapping[str, float], body: Body) -> float:
-    """Return the additional time [s] that the joint needs to its first key."""
+    """Return the additional time [s] that a joint needs to reach its first key.
+
+    Raises BadCommandError if the joint is too fast to its second key.
+    """
     keys, limit = motion.tracks[joint][:3], body.joints[joint].speed * (1 + LIMIT_SLACK)
     begin = here.get(joint, motion.origin.get(joint, keys[0].angle))
     first, *second = track(joint, keys, begin).segments[:2]

@@ -47,9 +47,9 @@ HEARD_TURN, HEARD_NOD = 1.0, 0.3
 class LifeLayer:
     """The offset of each joint from the target of the commands [rad; hands 0..1].
 
-    It depends only on the seed, and on the times and calls since the beginning. Its state is the style, the last
-    cause of attention, the time of the last aim of the head, the last text and its time, the time at which each part
-    became free, and the present offsets of the joints. `offsets` has the last values; any thread may read it.
+    The offsets depend only on the seed, and on the times and calls since the beginning. The state is the style, the
+    last cause of attention, the time of the last aim of the head, the last text and its time, the time at which each
+    part became free, and the present offsets of the joints. `offsets` has the last values; any thread may read it.
     """
 
     def __init__(self, body: Body, seed: int = 0) -> None:
@@ -177,7 +177,7 @@ class LifeLayer:
         return aside(asides, self._seed, self._answers, since) if asides else (0.0, 0.0)
 
     def _head(self, now: float) -> tuple[float, float]:
-        """Return the turn and tilt of the head [rad]; it nods only while it does not speak itself."""
+        """Return the turn and tilt of the head [rad]; the head nods only while the robot does not speak."""
         style = self.style
         down = nod(style.nods, self._seed, now) if style.nods and now >= self._said_until else 0.0
         yaw, pitch = self._aside(now)

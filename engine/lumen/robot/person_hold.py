@@ -73,7 +73,11 @@ class PersonHold:
             self._touched = True
 
     def admit(self, command: RobotCommand, *, behavior: bool) -> str:
-        """Return why a command may not begin, empty if it may; `behavior` is whether the behaviour sends it."""
+        """Return why a command may not begin; empty if it may.
+
+        `behavior` is whether the behaviour sends the command. If the behaviour moves the robot after a hand was on its
+        head, the hold ends.
+        """
         if not row_of(command).moves:
             self._rests = self._rests or (behavior and isinstance(command, Rest))
             return ""

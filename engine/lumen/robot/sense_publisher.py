@@ -37,9 +37,9 @@ class PendingReading:
 
     reading: OtherReading
     after: "PendingReading | None" = None
-    """The reading that must be published before it; None if it need not wait."""
+    """The reading that must be published before this one; None if this one need not wait."""
     began: float = 0.0
-    """When its publishing began [s, monotonic]."""
+    """When the publishing of the reading began [s, monotonic]."""
     begun: threading.Event = field(default_factory=threading.Event)
     """Set when its publishing begins."""
     done: threading.Event = field(default_factory=threading.Event)

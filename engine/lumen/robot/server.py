@@ -206,7 +206,7 @@ class RobotServer:
         return self._robot.read_other(sense) if isinstance(self._robot, HasOtherSenses) else None
 
     def _listen(self, project: Project) -> None:
-        """Give every route of a sense its publisher: the one of its name first, then those that are `of` it."""
+        """Give each route of a sense a publisher; routes `of` a sense come after the routes named after senses."""
         self._project = project
         senses = {sense: i for i, sense in enumerate(table("senses"))}
         rows = [(name, route) for name, route in project.routes.items() if route.sense in senses]

@@ -47,7 +47,7 @@ class SkillRunner:
     def begin(self, command: Do, now: float) -> "RunningSkill | PretendedSkill":
         """Begin a verb at `now` [s].
 
-        Raises RobotError if it is unknown, a cancelled call of it has not ended, or it is set to fail.
+        Raises RobotError if the verb is unknown, a cancelled call of it has not ended, or it is set to fail.
         """
         verb = added_verb(command)
         if (end := self._ends.get(command.skill)) is not None:

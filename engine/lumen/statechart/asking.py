@@ -28,7 +28,7 @@ class Sentence(NamedTuple):
     text: str
     """The words to say; empty for an event."""
     language: str = ""
-    """Their language; empty for the current one."""
+    """The language of the words; empty for the current language."""
     more: bool = False
     """True if more of the answer follows."""
     filler: bool = False

@@ -18,9 +18,9 @@ class CompiledMachine(NamedTuple):
     planner: MicrostepPlanner
     fast_paths: FastPaths
     invoked: "Mapping[str, CompiledMachine]"
-    """The behaviours that it invokes, by name."""
+    """The invoked behaviours, by name."""
     robots: tuple[str, ...] = ()
-    """The names of other robots to which it can send events."""
+    """The names of other robots to which the machine can send events."""
 
 
 def compiled(definition: MachineDefinition) -> CompiledMachine:

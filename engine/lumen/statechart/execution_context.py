@@ -51,7 +51,7 @@ class InvocationHandler(Protocol):
     children: Mapping[str, Invoked]
     """The invoked behaviours by the ids of their invokes."""
     steps: tuple[tuple[str, Step], ...]
-    """Their steps during this macrostep, each with the id of the invoke."""
+    """The steps of invoked behaviours during this macrostep, each with the id of the invoke."""
 
     def begin(self, context: "ExecutionContext", node: StateNode, invoke: CompiledInvoke) -> None:
         """Start an invoked behaviour (`invoke`)."""
@@ -105,7 +105,7 @@ class ExecutionContext:
     unforwarded: Event | None = None
     """An event from outside that has not been delivered to the invoked behaviours yet."""
     beginnings: tuple[Beginning, ...] = ()
-    """The states entered and not left again, with what to begin for them."""
+    """The states that were entered and not left again, with the activities to begin in them."""
     is_invoked: bool = False
     for_parent: tuple[Event, ...] = ()
     """Events for the behaviour that invoked this one."""

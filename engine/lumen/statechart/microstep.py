@@ -86,7 +86,7 @@ def microstep(context: ExecutionContext, plan: MicrostepPlan) -> None:
 def _end(context: ExecutionContext) -> None:
     """End the machine (`exitInterpreter`): run all exit actions, and drop its timers and pending events.
 
-    It stays in its final configuration, so that its end remains visible.
+    The machine stays in its final configuration, so that its end remains visible.
     """
     for change in context.machine.planner.end(context.configuration).exits:
         context.active = change.active
@@ -186,7 +186,10 @@ def _execute(context: ExecutionContext, block: CompiledBlock, node: StateNode) -
 
 
 def _output(context: ExecutionContext, node: StateNode) -> Any:
-    """Return the output of a final state; None if it has none, or if it fails with error.execution (SCXML 5.7.1)."""
+    """Return the output of a final state; None if there is none, or if computing it fails.
+
+    A failure raises error.execution (SCXML 5.7.1).
+    """
     if node.output is None:
         return None
     context.evaluate_in(node)

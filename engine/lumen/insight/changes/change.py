@@ -33,7 +33,7 @@ class Change:
     kind: str
     """The kind of part that changed: `text`, `state`, `route`, …"""
     about: str
-    """The name of what changed."""
+    """The name of the changed part."""
     sentence: str
     """The change in words."""
     risk: Risk

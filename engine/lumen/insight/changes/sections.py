@@ -40,7 +40,10 @@ def live_sections(old: Project, new: Project) -> dict[str, object]:
 
 
 def _both(old: Project, new: Project, key: str) -> tuple[object, object]:
-    """Return a section before and after; a project that lacks it has its defaults; None twice if both lack it."""
+    """Return a section before and after.
+
+    A project that lacks the section has its defaults; if both projects lack it, return None twice.
+    """
     before, after = old.sections.get(key), new.sections.get(key)
     if before is None and after is not None:
         before = type(after)()

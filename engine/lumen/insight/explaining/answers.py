@@ -31,7 +31,7 @@ class WhyAnswer:
     links: tuple[Link, ...]
     """The chain of causes: the effect first, its cause last."""
     needs: tuple[Link, ...] = ()
-    """Earlier steps, besides those of the chain, without which it would not have happened.
+    """Earlier steps, besides those of the chain, without which the effect would not have happened.
 
     They entered the states that were active, or set the values that were read. Only these steps, and those that they
     need in turn, made a difference.
@@ -61,7 +61,7 @@ def why(steps: Iterable[RecordedStep], what: str = "", until: float | None = Non
     """Return why `what` last happened up to `until` [s, on the exhibition's clock]; None means the end of the steps.
 
     `what` is a text that was said (or some of its words), a state, a motion, the id of a command, or empty for the last
-    thing that happened. Raises UsageError, with a hint, if it did not happen.
+    thing that happened. Raises UsageError, with a hint, if `what` did not happen.
     """
     history = _history(steps, until)
     found = effect(history, what)

@@ -24,7 +24,7 @@ ABSENT = object()
 MAX_VALUES = 24
 """The greatest number of values that are tried for one path."""
 FIRST = 6
-"""The greatest number of values mentioned in the guard that come before plain ones, as there may be very many."""
+"""The number of values from the guard that are tried before plain values; the others, possibly many, come after."""
 
 
 def boundaries(machine: MachineDefinition, sources: Iterable[str], scope: Scope) -> dict[ValuePath, list[Any]]:

@@ -260,7 +260,7 @@ class Chain:
 
 
 def _responsible(machine: MachineDefinition, step: TracedMicrostep, deed: Deed | None, state: str) -> Transition | None:
-    """Return the transition of a microstep that ran an action or led into a state; None if it has none."""
+    """Return the transition of a microstep that ran an action or led into a state; None without any transition."""
     taken = step.transitions
     if deed:
         within = [t for t in taken if not deed.block and deed.where[: len(t.where)] == t.where]

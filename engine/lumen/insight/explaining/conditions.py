@@ -17,7 +17,7 @@ class GuardPart(NamedTuple):
     holds: bool
     """Whether the condition is true. A condition that has no value counts as false (SCXML 5.9.1)."""
     values: Mapping[str, Any]
-    """The values that it read, by their names in the condition."""
+    """The values that the condition read, by their names in it."""
     error: str = ""
     """Why the condition has no value; empty if it has one."""
 

@@ -21,7 +21,7 @@ LinkKind = Literal["command", "activity", "transition", "event", "timer", "messa
 
 @dataclass(frozen=True, slots=True)
 class Link:
-    """Something that happened, as part of a chain of causes."""
+    """A link in a chain of causes: an event, a command or another occurrence."""
 
     kind: LinkKind
     """The kind of link."""
@@ -30,11 +30,11 @@ class Link:
     at: float
     """The time of the occurrence [s since 1970, in UTC]."""
     place: Place | None = None
-    """The place in the files that defines it; None if no file does."""
+    """The place in the files that defines the occurrence; None if no file does."""
     id: str = ""
     """The id of the command, timer or message; empty if it has none."""
     values: Mapping[str, Any] = field(default_factory=dict)
-    """The values that decided it: those of the guard's parts, or the data of the event."""
+    """The values that decided the occurrence: those of the guard's parts, or the data of the event."""
     number: int = 0
     """The number of the recorded step."""
 
@@ -52,7 +52,7 @@ class Link:
 
 
 class Effect(NamedTuple):
-    """Something that happened in a step: a command, or the entry of a state."""
+    """An effect in a step: a command, or the entry of a state."""
 
     number: int
     """The number of the step."""

@@ -25,7 +25,7 @@ class HeardRow(NamedTuple):
     fate: RowFate
     """Why the row is taken or not."""
     words: str = ""
-    """The words of its phrase as they were said; empty if nothing was found."""
+    """The words of the row's phrase as they were said; empty if no phrase was found."""
     clause: str = ""
     """The part of the sentence that contains the words."""
     name: str = ""

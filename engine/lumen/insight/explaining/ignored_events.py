@@ -42,7 +42,7 @@ class IgnoredEvent(NamedTuple):
     event: Event
     """The event."""
     deaf: tuple[str, ...]
-    """The innermost active states that do not listen to it, although other states of their regions do."""
+    """The innermost active states that do not listen to the event, although other states of their regions do."""
     refused: tuple[FalseGuard, ...]
     """The guards that were false."""
     unheard: tuple[str, ...] = ()

@@ -26,7 +26,7 @@ class GuardTruth(NamedTuple):
     holds: bool | None
     """The result of the guard; None if it depends on the event."""
     values: Mapping[str, Any]
-    """The values that it reads, by their names in it."""
+    """The values that the guard reads, by their names in it."""
 
 
 class WayOut(NamedTuple):
@@ -39,7 +39,7 @@ class WayOut(NamedTuple):
     transition: Transition
     """The transition."""
     open: bool
-    """False if it can't be taken now, whatever event comes."""
+    """False if the transition can't be taken now, whatever event comes."""
     guard: GuardTruth | None
     """The transition's guard at this moment; None without a guard."""
     why: str
@@ -52,15 +52,15 @@ class Running(NamedTuple):
     """A behaviour that runs."""
 
     owner: str
-    """The ids under which it runs; empty for the outermost."""
+    """The ids under which the behaviour runs; empty for the outermost."""
     machine: MachineDefinition
     """The behaviour's machine."""
     snapshot: Snapshot
     """The behaviour's snapshot."""
     prefix: str = ""
-    """The prefix of its states' names: `quiz/`."""
+    """The prefix of the names of the behaviour's states, such as `quiz/`."""
     host: str = ""
-    """The path of the state that has invoked it."""
+    """The path of the state that has invoked the behaviour."""
 
 
 def running(machine: MachineDefinition, snapshot: Snapshot, owner: str = "", host: str = "") -> Iterator[Running]:

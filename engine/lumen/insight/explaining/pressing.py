@@ -26,7 +26,7 @@ class ShownButton(NamedTuple):
     button: Button
     """The button."""
     state: str
-    """The outside name of its state."""
+    """The outside name of the button's state."""
     key: str
     """The button's key; empty if another button that is shown has the same one."""
     enabled: bool

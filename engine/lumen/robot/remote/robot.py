@@ -53,7 +53,7 @@ class _Pending:
     """A command that is not over; times are in [s] on the clock `patience`."""
 
     id: str
-    """The id under which the brain started it."""
+    """The id under which the brain started the command."""
     command: RobotCommand | None
     """The command; None if another process of this session sent it."""
     since: float
@@ -61,15 +61,15 @@ class _Pending:
     queried: float
     """When the command was last sent, queried or reported on."""
     heard: bool = False
-    """Whether the robot has reported on it."""
+    """Whether the robot has reported on the command."""
     cancelled: bool = False
-    """Whether the brain has cancelled it."""
+    """Whether the brain has cancelled the command."""
     held: bool = False
-    """Whether the command waits until the robot has received another one that stops it."""
+    """Whether the command waits until the robot has received another command that stops the robot."""
 
 
 Delegate = Callable[[str, Perform], bool]
-"""A function that lets another module perform a motion under an id; it returns False if none takes it."""
+"""A function that passes a motion on to another module under an id; it returns False if no module performs it."""
 
 
 class RemoteRobot:
@@ -188,7 +188,7 @@ class RemoteRobot:
         return found[0] if found else None
 
     def time(self) -> float | None:
-        """Return the robot's time [s], from its newest reading and that one's age; None before the first reading."""
+        """Return the robot's time [s], from the newest reading and its age; None before the first reading."""
         newest = max(self._readings.values(), key=lambda found: found[1], default=None)
         return None if newest is None else newest[0].time + self._clock() - newest[1]
 
