@@ -50,7 +50,7 @@ class Aliases:
         self._undo: list[Callable[[], None]] = []
 
     def use(self, project: Project, bus: Bus) -> None:
-        """Switch to this project's aliases, and subscribe to other robots' presence if it has any."""
+        """Switch to this project's aliases; if there are any, subscribe to the presence of other robots."""
         old, self._undo, self._project = self._undo, [], project
         self.names = aliases_of(project)
         for pattern in _presences(project) if self.names else ():

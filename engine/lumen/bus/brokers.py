@@ -22,7 +22,7 @@ class Probe(Protocol):
     product: str
     """Name of the broker's software."""
     version: str
-    """Its version."""
+    """The version of the broker's software."""
     address: object
     """Host, port and virtual host as text, without a password."""
     place: str
@@ -59,15 +59,15 @@ class StreamEntry(NamedTuple):
     """A message of a stream."""
 
     offset: int
-    """Its offset, -1 if the message is not from a stream."""
+    """The offset of the message; -1 if it is not from a stream."""
     key: str
-    """The routing key under which it was sent."""
+    """The routing key under which the message was sent."""
     body: Any
-    """JSON data, None if it can't be read."""
+    """The body as JSON data; None if it can't be read."""
     id: str = ""
-    """A unique id, empty if the sender gave none."""
+    """The unique id of the message; empty if the sender gave none."""
     time: float = 0.0
-    """When it was sent [s since 1970], 0 if the sender gave no time."""
+    """When the message was sent [s since 1970]; 0 if the sender gave no time."""
 
 
 class Stream(Protocol):

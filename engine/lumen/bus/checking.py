@@ -27,7 +27,7 @@ def body_checks(project: Project) -> dict[str, "SchemaCheck"]:
 
 
 class SchemaCheck:
-    """A check by one schema (2020-12): a call returns what is wrong with a body, empty if nothing is."""
+    """A check by one schema (2020-12): a call returns the fault of a body; empty for a valid body."""
 
     def __init__(self, schema: Mapping[str, object]) -> None:
         self._schema = JsonSchema(schema)

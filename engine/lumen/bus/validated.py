@@ -28,10 +28,10 @@ _log = logging.getLogger(__name__)
 class ValidatedBus(Bus):
     """A bus that passes only bodies that are valid on their routes.
 
-    An invalid body of this program is its own fault: `publish` raises BusError. An invalid one that arrives is not
-    delivered: `on_refused` is called, and the bus sets it aside and answers the sender. Keys without a route pass
-    unchecked if they begin with `avatar` or `lumen`, others not at all. A key with an alias is also sent and received
-    under it.
+    If this program publishes an invalid body, `publish` raises BusError. If an invalid body arrives, it is not
+    delivered: `on_refused` is called, and the bus sets the message aside and answers the sender. Keys without a route
+    pass unchecked if they begin with `avatar` or `lumen`, others not at all. A key with an alias is also sent and
+    received under it.
 
     `arrived` is called, on any thread, after a subscriber has handled a message. `failed` is called once with each
     fault of an installed package's subscriber, whose message is lost; the fault is logged with its traceback. On a bus

@@ -58,7 +58,10 @@ class HouseRun:
         self.house = House(self.made, self._lose, together=self.story is not None)
 
     def run(self) -> RunVerdict:
-        """Run until the story ends, the period is over, or the operator ends it; print and return how it went."""
+        """Run until the story ends, the period is over, or the operator ends it.
+
+        Print a summary and return the verdict.
+        """
         options, house = self._options, self.house
         heed_signals([*self.made.values()])
         project = next(iter(self.projects.values()))

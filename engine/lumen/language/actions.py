@@ -34,7 +34,7 @@ class Template:
 
     text: str
     where: NodePath = field(default=(), compare=False)
-    """Its path in the document."""
+    """The path of the text in the document."""
     written: str = field(default="", compare=False)
     """The author's text if it differs from `text`; else ""."""
 
@@ -75,7 +75,7 @@ class Assign:
 
 
 def context_key(way: str) -> str:
-    """Return the key of the context that a key of `assign` names, or leads into."""
+    """Return the context key that a key of `assign` changes: `visitor` for `visitor.name`."""
     return way.partition(".")[0]
 
 

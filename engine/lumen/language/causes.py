@@ -28,7 +28,7 @@ class MessageOrigin(NamedTuple):
     time: float = 0.0
     """The time at which the message was sent [s since 1970, in UTC]."""
     cause: str = ""
-    """The part of the behaviour that caused it: the id of a command (`d3`), or a step (`step 42`)."""
+    """The part of the behaviour that caused the message: the id of a command (`d3`), or a step (`step 42`)."""
 
 
 UNKNOWN_ORIGIN = MessageOrigin()

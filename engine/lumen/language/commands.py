@@ -143,7 +143,7 @@ class Stop:
 class Rest:
     """Stop, go safely to Crouch, and turn the motors off.
 
-    `by` is the person who demanded it, empty if no person did; it is never in the YAML.
+    `by` is the person who demanded the rest, empty if no person did; it is never in the YAML.
     """
 
     by: str = field(default="", metadata={"yaml": False})

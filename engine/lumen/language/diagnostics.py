@@ -139,7 +139,7 @@ class Code(str):
 
 
 def has_errors(diagnostics: Iterable[Diagnostic]) -> bool:
-    """Return True if any of them prevents the project from running."""
+    """Return True if any of the findings prevents the project from running."""
     return any(d.severity is Severity.ERROR for d in diagnostics)
 
 
@@ -221,7 +221,7 @@ def _alike(word: str, names: set[str]) -> set[str]:
 
 
 def mean(word: object, near: str) -> str:
-    """Return the hint with the word that was probably meant; if the two look the same, it adds the difference."""
+    """Return the hint with the word that was probably meant; if the two look the same, the hint adds the difference."""
     said = difference(str(word), near)
     return f"did you mean `{near}`?" + (f" {said}" if said else "")
 

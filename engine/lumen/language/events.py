@@ -20,7 +20,7 @@ class Event(NamedTuple):
     at: float = 0.0
     """The time on the exhibition's clock, the only clock that a step reads [s]."""
     sendid: str = ""
-    """The id of the timer or delayed `send` that raised it (SCXML 5.10.1); empty for events from outside."""
+    """The id of the timer or delayed `send` that raised the event (SCXML 5.10.1); empty for events from outside."""
     cause: Cause | None = None
     """The cause; None if it is unknown. No expression reads it."""
 

@@ -16,7 +16,10 @@ from lumen.language.properties import Property
 
 
 class StateKind(StrEnum):
-    """The `type:` of a state; without it a state with children is compound, any other atomic."""
+    """The `type:` of a state.
+
+    Without it, a state with children is compound, and any other state is atomic.
+    """
 
     ATOMIC = "atomic"
     COMPOUND = "compound"
@@ -209,7 +212,7 @@ class MachineDefinition:
     properties: tuple[Property, ...] = ()
     words: tuple[str, ...] = ()
     borrowed: Mapping[tuple[str, str], str] = field(default_factory=dict)
-    """The words file that an entry of a table comes from: `("answers", "faq")` is from `museum`."""
+    """The words file from which an entry of a table comes: `("answers", "faq")` is from `museum`."""
     renamed: Mapping[str, str] = field(default_factory=dict)
     hash: str = ""
     invoked: Mapping[str, "MachineDefinition"] = field(default_factory=dict, repr=False)
@@ -231,6 +234,6 @@ class MachineDefinition:
         return self.states[""]
 
     def invoked_behavior(self, path: str, id: str) -> str:
-        """Return the behaviour that the state at that path invokes under that id; empty if it does not."""
+        """Return the behaviour that the state at that path invokes under that id; empty if it invokes none."""
         invokes = self.states[path].invoke if path in self.states else ()
         return next((invoke.behavior for invoke in invokes if invoke.id == id), "")

@@ -61,7 +61,10 @@ class _Questions(HeardRows):
             yield from written_phrases(self.draft.report(KNOWLEDGE_FOLDER, name), ("questions",))
 
     def active_with(self, state: State) -> list[str]:
-        """Return the states with rows that may be active with this one: their rows are tried before its `else`."""
+        """Return the states with rows that may be active together with this state.
+
+        Their rows are tried before the `else` of this state.
+        """
         return [path for path in self.by_state if together(self.machine, state, self.machine.states[path])]
 
     def taken(self, text: str, state: State, active: Iterable[str]) -> Iterator[Taken]:

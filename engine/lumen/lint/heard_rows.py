@@ -40,12 +40,12 @@ class SaidRow(NamedTuple):
 
     @property
     def numbers(self) -> frozenset[int]:
-        """The numbers of its candidates in the machine."""
+        """The numbers of the row in the machine, one for each candidate."""
         return frozenset(t.hears.number for t in self.candidates if t.hears)
 
     @property
     def path(self) -> NodePath:
-        """The path of its key in the file."""
+        """The path of the row's key in the file."""
         return descriptor_path(self.candidates[0])
 
     @property

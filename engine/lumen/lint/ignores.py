@@ -30,9 +30,9 @@ class Ignore(NamedTuple):
     line: int
     """The number of the line to which it applies."""
     codes: tuple[tuple[str, Place], ...]
-    """The codes that it names, each with its place."""
+    """The codes that the comment names, each with its place."""
     reason: str
-    """The reason; empty if it gives none."""
+    """The reason; empty if the comment gives none."""
 
 
 def obey(
@@ -95,7 +95,10 @@ def _spot(diagnostic: Diagnostic) -> tuple[str, int, str]:
 def _faults(
     comment: Ignore, gone: set[tuple[str, int, str]], codes: Mapping[str, Code], *, whole: bool
 ) -> Iterator[Diagnostic]:
-    """Yield the faults of a comment; only if the `whole` project was checked, a comment that hides nothing is one."""
+    """Yield the faults of a comment.
+
+    A comment that hides nothing is a fault only if the `whole` project was checked.
+    """
     if not comment.codes:
         yield _fault(UNKNOWN_CODE, comment.place, "this comment names no code", "write `ignore[CODE] reason`")
     elif not comment.reason:

@@ -33,7 +33,7 @@ class ModelElement(NamedTuple):
     column: int
     """The column of the tag, from 1."""
     depth: int = 0
-    """The number of elements around it; 0 for the outermost element."""
+    """The number of elements around the element; 0 for the outermost element."""
 
 
 class ModelFault(NamedTuple):
@@ -56,7 +56,7 @@ class _EnoughError(Exception):
 
 
 def mjcf_elements(content: bytes) -> tuple[list[ModelElement], ModelFault | None]:
-    """Return the elements of a model, and its first fault: invalid XML or an exceeded limit; None if it has none."""
+    """Return the elements of a model, and its first fault: invalid XML or an exceeded limit; None without a fault."""
     reader = _Reader()
     try:
         reader.parser.Parse(content, True)

@@ -62,7 +62,7 @@ _NAMES = ("file", "fileright", "fileleft", "fileup", "filedown", "filefront", "f
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report invalid MJCF, missing files that it names, and joints of the body that it lacks."""
+    """Report invalid MJCF, missing files to which it refers, and joints of the body that the model lacks."""
     settings = draft.settings
     if settings is None:
         return

@@ -82,7 +82,7 @@ class HearsKeys:
         return ""
 
     def place(self, name: str, where: NodePath) -> Place:
-        """Return the place of a name in the key at `where`; that of the whole key if it is not found there."""
+        """Return the place of a name in the key at `where`; the place of the whole key if it lacks the name."""
         place = self.report.document.place(where, key=True)
         line = lines_of(self.report.document.text)[place.line - 1] if place.line == place.end_line else ""
         found = re.search(rf"(?<!\w){re.escape(name)}(?!\w)", line[place.column - 1 : place.end_column - 1])

@@ -22,7 +22,7 @@ HOW = "write `robot: {name: NAO, model: nao}` for one robot, or `robots:` with a
 def build_robots(data: Mapping[str, Any], report: DocumentReport) -> dict[str, RobotSpec]:
     """Return the robots of `robots:` by name, in the order written, or else the one of `robot:`.
 
-    It is reported if the file has both keys, or neither. Without either, the result is one robot with default settings.
+    A file with both keys, or with neither, is reported. Without either, the result is one robot with default settings.
     """
     several = data.get("robots")
     if "robot" in data and several:

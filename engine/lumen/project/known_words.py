@@ -32,7 +32,7 @@ class KnownWords(NamedTuple):
     files: tuple[str, ...]
     """The names of the files under `words`."""
     borrowed: Mapping[tuple[str, str], str]
-    """The file that (key, name) comes from, if it is not from the behaviour itself."""
+    """The words file that defines each (key, name) which the behaviour does not define itself."""
     whole: bool
     """False if one of the files can't be read, so that an unknown name may be defined there."""
     anyhow: frozenset[str] = frozenset()
@@ -58,8 +58,9 @@ def known_words(
     """Return all words that a behaviour can name; a missing file and a name that is defined twice are reported.
 
     `names` are those of all words files, including unreadable ones. `shipped` is true if the words file `common` comes
-    with Lumen. Then it adds only names that are not defined elsewhere, in the project's `languages`. `hears` is true if
-    the behaviour has `hears`; it then uses the word lists of `common` even if it does not name the file.
+    with Lumen. In that case `common` adds only names that are not defined elsewhere, in the project's `languages`.
+    `hears` is true if the behaviour has `hears`; the behaviour then uses the word lists of `common` even if it does not
+    name that file.
     """
     return _Gatherer(data, report, files, names, languages, shipped).gather(hears)
 
@@ -114,7 +115,10 @@ class _Gatherer:
         return added
 
     def in_languages(self, content: Any) -> Any:
-        """Return phrases, or rows of answers, in the languages of the project; in all if these are not known."""
+        """Return phrases, or rows of answers, in the languages of the project.
+
+        If these are not known, all languages are included.
+        """
         if isinstance(content, Mapping):
             return {language: texts for language, texts in content.items() if language in (self.languages or content)}
         rows = [Answer(self.in_languages(row.phrases), row.value) for row in content]

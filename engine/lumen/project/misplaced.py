@@ -15,7 +15,7 @@ _ENDING = re.compile(r"(?P<stem>.+?)\s*\.(?:(?P<yaml>ya?ml)|(?P<other>md|json|xm
 
 
 class Misnamed(NamedTuple):
-    """The path of a file or folder as it is and as it should be, from the project's root; `/` ends that of a folder."""
+    """The path of a file or folder as it is and as it should be, from the project's root; a folder's ends with `/`."""
 
     there: str
     meant: str

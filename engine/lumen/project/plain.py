@@ -17,7 +17,7 @@ D = TypeVar("D")
 
 
 def derived(into: type[D], value: Any) -> D:
-    """Return the same value as an instance of `into`, a class derived from its own with the same fields."""
+    """Return the same value as an instance of `into`, a class that is derived from the value's and adds no fields."""
     return into(**{field.name: getattr(value, field.name) for field in fields(value)})
 
 

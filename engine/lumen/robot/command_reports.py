@@ -83,7 +83,7 @@ class CommandReports:
         return sum(record.takes for record in self._running.values() if not parts.isdisjoint(record.parts))
 
     def find(self, id: str, sender: str) -> CommandRecord | None:
-        """Return the record of the command with that id from this sender, or from an unknown one; None if unknown."""
+        """Return the record of the command with that id from this sender, or from an unknown one; None without one."""
         return self._known.get((sender, id)) or self._known.get((None, id))
 
     def asked(self, id: str, sender: str) -> CommandRecord | None:

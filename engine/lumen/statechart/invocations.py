@@ -64,7 +64,10 @@ class Invocations:
             self.deliver(context, id, event)
 
     def post(self, context: ExecutionContext) -> None:
-        """Deliver the events sent to behaviours and robots; without a recipient it is an error (SCXML 6.2.5)."""
+        """Deliver the events sent to behaviours and robots.
+
+        An event without a recipient raises error.communication (SCXML 6.2.5).
+        """
         sent, context.outbox = context.outbox, ()
         for id, event in sent:
             if id in self.children:

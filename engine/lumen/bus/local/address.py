@@ -26,7 +26,7 @@ class LocalAddress:
     """The address of a server on this machine."""
 
     path: str = ""
-    """Path of its socket, empty if it uses a port."""
+    """The path of the server's socket; empty if the server uses a port."""
     port: int = 0
     """Port on loopback, on systems without such sockets."""
     key: str = ""

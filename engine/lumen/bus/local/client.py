@@ -85,7 +85,7 @@ _log = logging.getLogger(__name__)
 
 
 class LocalBusClient(Bus):
-    """The bus of a `LocalBusServer`. Raises BusError if none listens, or it does not have the key.
+    """The bus of a `LocalBusServer`. Raises BusError if no server listens, or the server does not have the key.
 
     One thread sends, one receives, and one runs the handlers; if a handler is too slow, the oldest messages are
     dropped. `sender` is the name of this program in its messages.

@@ -51,7 +51,7 @@ _log = logging.getLogger(__name__)
 
 
 class ClientConnection:
-    """A connected process: its subscriptions, and what waits to be sent to it."""
+    """A connected process: its subscriptions, and the frames that wait to be sent to it."""
 
     def __init__(self, wire: socket.socket) -> None:
         self.wire, self.question, self.known = wire, nonce(), False

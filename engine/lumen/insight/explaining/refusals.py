@@ -45,14 +45,14 @@ class Reason:
     false: GuardPart | None = None
     """The first part of the guard that was not true; None if the guard is not the reason."""
     change: ProposedChange | None = None
-    """The smallest change found after which it would have happened; None if none was found.
+    """The smallest change found after which the goal would have happened; None if none was found.
 
-    It is proved by taking the step again.
+    The change is proved by taking the step again.
     """
     note: str = ""
     """Why there is no change; empty if there is one."""
     number: int = -1
-    """The number of the recorded step that decided it, or of the last one."""
+    """The number of the recorded step that decided against the goal, or of the last one."""
 
     def to_json(self) -> dict[str, Any]:
         """Return an entry of `reasons` in the output of `lumen why-not --format json`."""

@@ -31,7 +31,7 @@ MAX_SAID = 24
 _SAID = ("event", "data", "result")
 
 Happens = Callable[[StepSituation], bool]
-"""Whether the expected thing happens in a situation."""
+"""A function that returns whether the expected transition is taken in a situation."""
 
 
 def taken(machine: MachineDefinition, owner: str, transition: Transition, goal: str) -> Happens:

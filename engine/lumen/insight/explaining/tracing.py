@@ -73,7 +73,7 @@ class TracedMicrostep:
 
 
 class Deed(NamedTuple):
-    """Something that an action did, or that happened by itself."""
+    """A command, an event or a timer that an action caused, or that arose by itself."""
 
     owner: str
     """The ids under which the behaviour runs; empty for the outermost."""
@@ -86,7 +86,7 @@ class Deed(NamedTuple):
     state: str
     """The path of the state whose `entry`, `do`, `exit` or transitions contain the action."""
     microstep: TracedMicrostep | None
-    """The last microstep before it in this step; None if there was none."""
+    """The last microstep before the deed in this step; None if there was none."""
 
     @property
     def block(self) -> str:
@@ -97,7 +97,7 @@ class Deed(NamedTuple):
 
 @dataclass(slots=True)
 class Trace:
-    """Everything that happened within a step, in order."""
+    """The record of a step: its decisions, microsteps and deeds, each in order."""
 
     moments: list[Moment] = field(default_factory=list)
     microsteps: list[TracedMicrostep] = field(default_factory=list)
@@ -119,7 +119,7 @@ class TracedContext(ExecutionContext):
     owner = ""
     acting: NodePath = ()
     pending = False
-    """Whether an event has come and nothing has been decided about it yet."""
+    """Whether an event has come about which nothing has been decided yet."""
     last: TracedMicrostep | None = None
     timers_before: tuple[Timer, ...] = ()
 

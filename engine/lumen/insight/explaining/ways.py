@@ -27,7 +27,7 @@ class Way(NamedTuple):
     machine: MachineDefinition
     transition: Transition
     deed: PlacedDeed | None = None
-    """The action that it leads to; None if a state is sought."""
+    """The action to which the transition leads; None if a state is sought."""
 
 
 def ways(machine: MachineDefinition, what: str) -> list[Way]:

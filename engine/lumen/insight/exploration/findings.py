@@ -20,7 +20,7 @@ class PathStep:
     stimulus: Stimulus | None
     """The stimulus that led to the states; None at the beginning."""
     states: tuple[str, ...]
-    """The innermost states active after it, those of invoked behaviours (`quiz/ask`) included."""
+    """The innermost states active after the stimulus, those of invoked behaviours (`quiz/ask`) included."""
 
 
 @dataclass(frozen=True)
@@ -30,11 +30,11 @@ class ExplorationFinding:
     kind: FindingKind
     """The kind of fault."""
     state: str
-    """The path of the state that it is about."""
+    """The path of the state that the fault concerns."""
     message: str
     """The fault in words."""
     path: tuple[PathStep, ...]
-    """The shortest path to it."""
+    """The shortest path to the fault."""
     where: NodePath = ()
     """The place of the property in the file; empty for other faults."""
     patience: float = 0.0

@@ -53,14 +53,14 @@ MAX_SAID = 20
 
 
 class Stimulus(NamedTuple):
-    """Something that can happen."""
+    """A stimulus: an event from outside, the end of a timer, or the robot's answer to a command."""
 
     kind: StimulusKind
     """The kind of stimulus."""
     event: Event
     """The event that the behaviour processes."""
     waited: float = 0.0
-    """The time until it happens [s]."""
+    """The time until the stimulus happens [s]."""
     command: BodyCommand | None = None
     """The command that is answered; None for other kinds."""
     pending: tuple[BodyCommand, ...] = ()

@@ -28,5 +28,5 @@ def text_of(file: str, content: bytes, findings: ConversionFindings) -> str:
 
 
 def _is_cyrillic(content: bytes) -> bool:
-    """Return True if letters of Windows-1251 stand next to each other more often than next to Latin letters."""
+    """Return True if letters of Windows-1251 are next to each other more often than next to Latin letters."""
     return len(_CYRILLIC_WORD.findall(content)) > len(_LATIN_WORD.findall(content))

@@ -81,7 +81,7 @@ def _cut(points: list[CurvePoint], excess: Excess, body: Body, findings: Convers
 
 
 def _joint(excess: Excess) -> str:
-    """Return the joint that the key of an excess belongs to; in a coupled range, that may be the other joint."""
+    """Return the joint to which the key of an excess belongs; in a coupled range, that may be the other joint."""
     return str(excess.key.where[0])
 
 

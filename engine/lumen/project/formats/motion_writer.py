@@ -15,7 +15,7 @@ TIME_TO_FIRST_POSE = 1.0
 """The time given to the robot to reach a first pose that the file sets at 0 s [s]."""
 
 MIN_KEY_DISTANCE = 1e-3
-"""The minimum time between two keys of a joint [s]; the second of two closer ones is left out."""
+"""The minimum time between two keys of a joint [s]; of two keys that are closer, the second is left out."""
 
 
 @dataclass(frozen=True)

@@ -81,7 +81,7 @@ def axis(variable: Variable) -> PlotAxis:
 
 
 def ends(variable: Variable) -> tuple[float, float]:
-    """Return the lower and upper end of a variable's range; an infinite end becomes one that all its terms fit in."""
+    """Return the ends of a variable's range; an infinite end is replaced so that all terms of the variable fit."""
     if isfinite(variable.minimum) and isfinite(variable.maximum):
         return variable.minimum, variable.maximum
     said = [p for term in variable.terms.values() for p in term.parameters if isfinite(p)] or [-1.0, 1.0]
