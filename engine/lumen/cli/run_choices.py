@@ -31,7 +31,7 @@ def chosen_story(project: Project, name: str | None) -> Story | None:
 def period_of(text: str | None) -> float | None:
     """Return the length of a run [s] from a text such as `2min`, None if there is no text.
 
-    Raises UsageError if it is not a duration.
+    Raises UsageError if the text is not a duration.
     """
     if text is None:
         return None
@@ -50,7 +50,10 @@ def language_of(project: Project, language: str | None) -> str:
 
 
 def robot_of(options: argparse.Namespace, project: Project, story: Story | None) -> Setup:
-    """Return the set-up of the robot that the options choose. Raises UsageError if they contradict each other."""
+    """Return the set-up of the robot that the options choose.
+
+    Raises UsageError if the options contradict each other.
+    """
     return set_up(options.robot, project, options.speed, story, robot_wishes(options))
 
 

@@ -36,7 +36,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Write the story; return 0 if the robot does the same in it as in the visit, 1 if today's files change that.
+    """Write the story; return 0 if its course is that of the visit, 1 if today's files change the course.
 
     Raises UsageError if the journal lacks a part of the visit or its files, or if the output file already exists.
     """

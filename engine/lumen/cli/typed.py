@@ -18,9 +18,9 @@ from lumen.upkeep.threads import WatchedThread
 FAREWELL = 5.0
 """The time that the exhibition continues after the visitor has left [s]."""
 MAX_LINE_CHARACTERS = 1_000
-"""The maximum length of a line; a longer one is split."""
+"""The maximum length of a line; a longer line is split."""
 MAX_WAITING_LINES = 100
-"""The maximum number of lines that wait to be spoken; reading pauses until one was spoken."""
+"""The maximum number of lines that wait to be spoken; reading pauses until a line was spoken."""
 
 
 def typed_visitor(services: Services) -> "TypedVisitorPart | None":

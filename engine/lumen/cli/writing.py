@@ -21,7 +21,7 @@ def write_result(text: str, output: Path | None, *, folders: bool = False) -> No
 def write_file(content: bytes, output: Path, *, folders: bool = False) -> None:
     """Write a file atomically; `folders` creates missing folders.
 
-    Raises UsageError if that fails; an existing file is then unchanged.
+    Raises UsageError if the writing fails; an existing file is then unchanged.
     """
     try:
         if folders:

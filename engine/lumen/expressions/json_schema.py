@@ -1,8 +1,8 @@
 """JSON Schema (2020-12): a fast check whether data fits, and an explanation by jsonschema if it does not.
 
 jsonschema explains errors well, but needs 20 µs for a body of two numbers and a third of lint's time. Nearly all data
-fits, and jsonschema-rs confirms that a hundred times as fast (docs/decisions/022); jsonschema runs only if it does not.
-Both use Lumen's patterns: letters are those of every script, and matching never backtracks.
+fits, and jsonschema-rs confirms this a hundred times as fast (docs/decisions/022); jsonschema runs only if the data
+does not fit. Both use Lumen's patterns: letters are those of every script, and matching never backtracks.
 """
 
 from collections.abc import Callable, Iterator, Mapping
@@ -114,7 +114,7 @@ class JsonSchema:
 
 
 def occurs(pattern: str, text: str) -> bool:
-    """Return whether the pattern matches anywhere in the text; True if it is invalid, which lint reports."""
+    """Return whether the pattern matches anywhere in the text; True if the pattern is invalid, which lint reports."""
     try:
         return compile_pattern(pattern).search(text)
     except ExpressionError:

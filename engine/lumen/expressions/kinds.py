@@ -28,7 +28,7 @@ class FaultError(Exception):
 class WrongKindError(Exception):
     """The error of an operand that has none of the kinds `wanted`.
 
-    `operand` is its index in the evaluated node; -1 is the node itself.
+    `operand` is the operand's index in the evaluated node; -1 is the node itself.
     """
 
     def __init__(self, operand: int, value: Any, *wanted: str) -> None:

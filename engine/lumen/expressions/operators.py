@@ -44,7 +44,7 @@ def negation(value: Any) -> bool:
 
 
 def equal(left: Any, right: Any) -> bool:
-    """Return True if two values are equal; values of different kinds are not, but 1 and 1.0 are."""
+    """Return True if two values are equal; values of different kinds are unequal, but 1 and 1.0 are equal."""
     kind = kind_of(left)
     if kind != kind_of(right):
         return False

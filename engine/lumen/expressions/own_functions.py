@@ -37,7 +37,7 @@ class OwnFunction:
 
 
 KnownFunctions = Mapping[str, OwnFunction | None]
-"""The functions of a project by name; None for one whose file is broken."""
+"""The functions of a project by name; None for a function whose file is broken."""
 
 
 class BrokenFunctionError(Exception):

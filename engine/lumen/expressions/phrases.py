@@ -63,7 +63,7 @@ def _are_slotted(phrases: Mapping[str, tuple[str, ...]]) -> bool:
 def is_heard(text: str, phrases: Mapping[str, tuple[str, ...]], lists: Lists = _NO_LISTS) -> bool:
     """Return True if any phrase, in any language, is in the text as whole words; negations are ignored.
 
-    `lists` are those that slots may name.
+    `lists` are the lists that slots may name.
     """
     try:
         table, (prepared, slotted) = _kept[id(phrases)]
@@ -92,7 +92,7 @@ def _is_caught(text: str, phrases: Mapping[str, tuple[str, ...]], lists: Lists) 
 
 
 def phrases_of(value: Any) -> Mapping[str, tuple[str, ...]]:
-    """Return the phrases in a list entry: a list of texts, or one for each language.
+    """Return the phrases in a list entry: a list of texts, or one list for each language.
 
     Raises FaultError if the value is anything else.
     """
@@ -109,10 +109,11 @@ def phrases_of(value: Any) -> Mapping[str, tuple[str, ...]]:
 
 
 def answer(scope: Scope, text: str, table: Any) -> Any:
-    """Return the value of the first `answers:` row with a phrase that is in the text; None if no row has one.
+    """Return the value of the first `answers:` row with a phrase that is in the text; None if there is no such row.
 
-    If the value is a map of languages, return the text in the current language, or the first one if there is no such
-    text. A map counts as one of languages if every key is the current language, or one in which the table has phrases.
+    If the value is a map of languages, return the text in the current language, or the first text if there is none in
+    that language. A map is one of languages if every key is the current language, or a language in which the table has
+    phrases.
     """
     prepared = _answers.get(table) or _answers.put(table, _AnswerTable(table))
     found = prepared.entry(padded(text[:MAX_TEXT_EXAMINED]))
@@ -132,7 +133,7 @@ class _AnswerTable:
         self.last: tuple[str, Answer | None] = ("", None)
 
     def entry(self, said: str) -> Answer | None:
-        """Return the first row with a phrase that is in the padded words `said`; None if no row has one."""
+        """Return the first row with a phrase that is in the padded words `said`; None if there is no such row."""
         before, found = self.last
         if before is not said:
             begun = (row for word in said.split() if word in self.phrases for row in self.phrases[word])

@@ -39,7 +39,7 @@ Infix = tuple[int, Callable[[Any, ExpressionNode, Token, int], ExpressionNode]]
 
 
 class PrattParser(ABC):
-    """One pass over tokens, the last of kind `end`; `token` is the next one.
+    """One pass over tokens, the last of which has the kind `end`; `token` is the next token.
 
     Methods raise the errors of `unexpected` and `too_deep`.
     """
@@ -112,14 +112,14 @@ class PrattParser(ABC):
         return read
 
     def accept(self, text: str) -> bool:
-        """Consume the next token if it is this one; return whether it was."""
+        """Consume the next token if it is `text`; return whether it was."""
         found = self.token.text == text
         if found:
             self.advance()
         return found
 
     def expect(self, text: str) -> Token:
-        """Consume the next token, which must be this one, and return it."""
+        """Consume the next token, which must be `text`, and return it."""
         if self.token.text != text:
             raise self.unexpected(f"a `{text}` is missing")
         return self.advance()
@@ -217,7 +217,10 @@ class PrattParser(ABC):
         return FunctionCall(function, (left, *arguments), name.offset, offset=left.offset, end=end)
 
     def listed(self, close: str) -> tuple[tuple[ExpressionNode, ...], int]:
-        """Parse expressions between commas up to `close`; return them and its end. A trailing comma is allowed."""
+        """Parse expressions between commas up to `close`; return them and the end of `close`.
+
+        A trailing comma is allowed.
+        """
         items: list[ExpressionNode] = []
         while self.token.text != close:
             items.append(self.expression(0))

@@ -61,7 +61,7 @@ class _Substitution:
         self.localized = localized
 
     def of(self, node: ExpressionNode, *, whole: bool = False) -> ExpressionNode:
-        """Return the node with all variables replaced; `whole` keeps its texts in all languages."""
+        """Return the node with all variables replaced; with `whole`, its texts stay in all languages."""
         match node:
             case Identifier() | FieldAccess() | IndexAccess():
                 path = self.path(node)
@@ -72,7 +72,7 @@ class _Substitution:
         return rebuilt(node, self.of)
 
     def path(self, node: ExpressionNode) -> ExpressionNode:
-        """Return a path with its first name replaced, if that is a variable."""
+        """Return a path with its first name replaced, if that name is a variable."""
         match node:
             case Identifier(name=name):
                 return self.meant.get(name, node)

@@ -24,7 +24,7 @@ class OperatorRequest:
     example: str = ""
     """The text after `"ask": …` in the list that answers an invalid request; empty if it is not in the list."""
     fault: str = ""
-    """The reason that an invalid request of this name is refused with; empty for the list of valid requests."""
+    """The reason given for the refusal of an invalid request of this name; empty for the list of valid requests."""
 
     def __call__(self, **fields: Any) -> dict[str, Any]:
         return {"ask": self.ask, **fields}
@@ -74,4 +74,4 @@ REQUESTS = (
     STATUS, NOW, EVENT, PRESS, APPROVE, AUTONOMY, MODEL, GOTO, MARK, FORK, WHY, WHY_NOT, NOTE, JOURNAL,
 )  # fmt: skip
 UNLISTED = (WHY_NOT, NOTE, JOURNAL)
-"""Requests that the answer to an invalid one does not list."""
+"""Requests that the answer to an invalid request does not list."""

@@ -67,7 +67,7 @@ class Project:
     languages: tuple[str, ...] = ("en",)
     """The codes of the languages, the default language first."""
     timezone: str = ""
-    """The time zone; empty for that of the machine."""
+    """The time zone; empty for the machine's own."""
     story: str = ""
     stage: Stage | None = None
     bus: str = "memory://"
@@ -85,7 +85,7 @@ class Project:
     house: str = ""
     """The name of the house that the robots share."""
     sections: Sections = field(default_factory=dict)
-    """The settings of features by the keys of their sections; `section` returns those of one."""
+    """The settings of features by the keys of their sections; `section` returns those of one section."""
     verbs: Mapping[str, VerbRow] = field(default_factory=dict)
     """The verbs that files of the project declare."""
     documents: Mapping[str, Places] = field(default_factory=dict, repr=False, compare=False)

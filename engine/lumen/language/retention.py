@@ -8,7 +8,7 @@ SHORTEST_RING, LONGEST_RING = 10.0, 7200.0
 
 @dataclass(frozen=True, slots=True)
 class JournalRetention:
-    """The limits of the journal, beyond which the oldest entries are deleted; if one is 0, no journal is kept."""
+    """The limits of the journal, beyond which the oldest entries are deleted; if a limit is 0, no journal is kept."""
 
     keep: float = 30.0
     """The maximum age of an entry [days]."""

@@ -32,7 +32,7 @@ HEAD_YAW, HEAD_PITCH = "head.yaw", "head.pitch"
 
 
 FIXED = "fixed"
-"""The kind of the base of a body that names none."""
+"""The default kind of a body's base."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,7 +96,10 @@ class SensorRoles:
 
 @dataclass(frozen=True)
 class Roles:
-    """The parts of a body by function. All may be absent; the body can't do what needs an absent part."""
+    """The parts of a body by function.
+
+    All may be absent; the body can't perform actions that need an absent part.
+    """
 
     torso: str = ""
     """The name of the torso's link in the MJCF (x ahead, y left, z up); empty for none."""

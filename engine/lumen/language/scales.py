@@ -16,7 +16,7 @@ SCALES: tuple[tuple[tuple[str, ...], ...], ...] = (
 
 
 def ranks(names: tuple[str, ...]) -> dict[str, int]:
-    """Return the ranks of those names that are on one scale, the scale with most of them.
+    """Return the ranks of the names that are on one scale: the scale with the most of these names.
 
     The result is empty if no scale has two of the names with different ranks.
     """

@@ -10,7 +10,7 @@ Sections = Mapping[str, object]
 
 
 def section_of(sections: Sections, kind: type[T]) -> T:
-    """Return the settings of this type, its defaults if there are none."""
+    """Return the settings of this type, the type's defaults if there are none."""
     for settings in sections.values():
         if isinstance(settings, kind):
             return settings

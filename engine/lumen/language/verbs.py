@@ -67,7 +67,7 @@ class VerbField:
     quantity: Quantity = Quantity.PLAIN
     """The kind of the value, which decides the value's unit."""
     names: str = ""
-    """The kind of thing that the value names: `motion`, `posture`, `controller`, `language` or `place`; else ""."""
+    """The kind of item that the value names: `motion`, `posture`, `controller`, `language` or `place`; else ""."""
     others: bool = False
     """True if the value is the map of all keys that no other field has."""
 
@@ -214,7 +214,7 @@ _LANGUAGE = Verb(
 VERBS: tuple[Verb[Any], ...] = (
     _PLAY, _POSTURE, _GO_TO, _MOVE, _WALK, _LOOK, _LEDS, _VOLUME, _SOUND, _TRACK, _STOP, _REST, _WAKE, _LANGUAGE,
 )  # fmt: skip
-"""The rows of all verbs. Of rows that share a name, the fields in the data select one, else the last one is used."""
+"""The rows of all verbs. Of rows that share a name, the fields in the data select one, else the last row is used."""
 
 COMPUTED: Mapping[type[ComputedAction], str] = {
     SayText: "say", PublishBody: "publish", Assign: "assign", Raise: "raise", Send: "send", CancelSend: "cancel",
@@ -254,7 +254,7 @@ def is_built_in(name: str) -> bool:
 
 
 def names_in(action: Action, kind: str) -> Iterator[str]:
-    """Yield the names of a kind of thing, such as `motion` or `posture`, in the fields of an action."""
+    """Yield the names of one kind, such as `motion` or `posture`, in the fields of an action."""
     verb = _BY_COMMAND.get(type(action))
     yield from (getattr(action, field.name) for field in verb.fields if field.names == kind) if verb else ()
 

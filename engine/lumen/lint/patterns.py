@@ -26,10 +26,10 @@ _PATTERN_SIGNS = re.compile(r"[()\[\]{}|]")
 _MIN_PARTS = 3
 """The least number of parts between commas that count as alternatives; fewer may be a sentence."""
 _SAME_BEGINNING = 3
-"""The number of equal letters at the beginning of two words that counts as two forms of one: "dance, dancing"."""
+"""The number of equal first letters from which two words count as forms of one word: "dance, dancing"."""
 
 _MAX_TORN = 10
-"""The greatest number of phrases before and after one that are searched for the rest of a torn pattern."""
+"""The greatest number of phrases before and after a phrase that are searched for the rest of a torn pattern."""
 
 _FOREIGN: tuple[tuple[re.Pattern[str], str, str], ...] = (
     (

@@ -105,7 +105,7 @@ def _action(draft: ProjectDraft, report: DocumentReport, references: References,
 def _names(
     draft: ProjectDraft, report: DocumentReport, references: References, where: NodePath, command: VerbCommand
 ) -> None:
-    """Check each field of a command that names something, written after the verb or under its own key."""
+    """Check each name in the fields of a command, whether it is written after the verb or under its own key."""
     verb = verb_of(command)
     for field in (field for field in verb.fields if field.names != "place"):
         name = getattr(command, field.name)

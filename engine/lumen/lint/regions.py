@@ -73,7 +73,7 @@ def _crossing(
 
 
 def _child(machine: MachineDefinition, path: str, below: str) -> str:
-    """Return the child of a state that contains a descendant of it."""
+    """Return the child of the state `path` that contains the state `below`."""
     while (parent := machine.states[below].parent) is not None and parent != path:
         below = parent
     return below

@@ -1,7 +1,7 @@
 """Rewriting of routes with keys of 2015: their new keys contain the robot's name, and the old key becomes the alias.
 
 No version of the vocabulary requires the new keys: for one robot the old keys are right. Two robots on one broker need
-the new ones.
+the new keys.
 """
 
 from collections.abc import Mapping

@@ -43,7 +43,7 @@ _FORMED = {JPEG_TYPE: IMAGE, FLOATS_TYPE: JOINT}
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report what is wrong with each row of the route table."""
+    """Report the faults of each row of the route table."""
     settings, report = draft.settings, draft.main
     if settings is None or report is None:
         return

@@ -82,7 +82,7 @@ def _taken(report: DocumentReport, route: Route, settings: Settings) -> bool:
 
 
 def _owners(settings: Settings) -> Mapping[str, str]:
-    """Return the names of the routes that are only Lumen's, by their keys in this exhibition."""
+    """Return the names of the routes that only Lumen uses, by their keys in this exhibition."""
     own = {name: key for name, key in DEFAULT_KEYS.items() if name not in SHARED_ROUTES}
     keys = {name: settings.routes[name].key if name in settings.routes else key for name, key in own.items()}
     aliases = {alias: name for name, alias in DEFAULT_ALIASES.items() if name in own and name not in settings.routes}

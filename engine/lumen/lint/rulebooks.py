@@ -152,7 +152,7 @@ def _clash(first: Rule, second: Rule) -> tuple[Proposition, Proposition] | None:
 
 
 def _subsumed(found: list[tuple[frozenset[Proposition], Rule]], report: DocumentReport) -> None:
-    """Report rules with more conditions and the same conclusion as another: they never add to it."""
+    """Report rules with more conditions and the same conclusion as another rule: they never change the result."""
     for asked, rule in found:
         wider = next((r for parts, r in found if parts < asked and r.weight >= rule.weight), None)
         if wider:

@@ -8,9 +8,9 @@ from lumen.lint.codes import codes, families
 
 
 def selected(words: Iterable[str]) -> frozenset[str]:
-    """Return the codes that these words select; a word may be several, separated by commas.
+    """Return the codes that these words select; a word may contain several codes, separated by commas.
 
-    `unknown` selects every code that begins with `unknown-`. Raises UsageError for a word that selects none.
+    `unknown` selects every code that begins with `unknown-`. Raises UsageError for a word that selects no code.
     """
     return frozenset(code for text in words for word in text.split(",") for code in _codes(word.strip()))
 

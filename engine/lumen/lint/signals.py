@@ -129,7 +129,7 @@ def _context(
 ) -> Mapping[str, Any] | None:
     """Return the schema of the bound context key; None if no behaviour declares it.
 
-    That is reported unless an unreadable part of a behaviour may declare the key.
+    An undeclared key is reported unless an unreadable part of a behaviour may declare it.
     """
     path = (*binding.where, "context")
     declared = {
@@ -240,7 +240,7 @@ def _twice(draft: ProjectDraft) -> None:
 
 
 def _never_off(draft: ProjectDraft) -> set[str]:
-    """Return the controllers that some action switches on and none switches off."""
+    """Return the controllers that some action switches on and no action switches off."""
     actions = [site.step.action for machine in draft.behaviors.values() for site in action_sites(machine)]
     tracks = [action for action in actions if isinstance(action, Track)]
     return {t.controller for t in tracks if t.on} - {t.controller for t in tracks if not t.on}

@@ -111,8 +111,8 @@ def _silent(
 ) -> tuple[dict[str, tuple[str, list[Related]]], dict[str, str]]:
     """Return the languages with hardly any texts, if others have texts, and their share of all texts.
 
-    The first mapping has for each the language that was probably meant (else empty), with a place of its texts. The
-    second mapping has counts such as `2 of 16`, empty if a language has no text at all.
+    For each of these languages, the first mapping has the language that was probably meant (else empty), with a place
+    of a text in that language. The second mapping has counts such as `2 of 16`, empty if a language has no text at all.
     """
     found: dict[str, Place] = {}
     counts: Counter[str] = Counter()

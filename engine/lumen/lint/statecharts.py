@@ -21,7 +21,7 @@ MAX_FOLLOWED_ALWAYS = 4
 """The greatest number of guarded `always` of one state that are followed."""
 
 _LEADS = frozenset(("on", "hears", "always", "after", "at", "onDone", "onError", "onReload", "target", "initial"))
-"""Keys whose values name states; an unreadable value of one may have named any state."""
+"""Keys whose values name states; an unreadable value of such a key may have named any state."""
 
 Onward = Mapping[str, Sequence[tuple[Transition, str]]]
 

@@ -180,7 +180,7 @@ class _Script:
                 self.report(complaint.code, place, complaint.message, complaint.hint, key=complaint.key)
 
     def _lost(self, name: str) -> bool:
-        """Return whether a name was in an unreadable part of the behaviour, or of one that it invokes."""
+        """Return whether a name was in an unreadable part of the behaviour, or of a behaviour that it invokes."""
         last = name.rpartition(ID_SEPARATOR)[2]
         behaviors = self.draft.behaviors if last != name else (self.behavior,)
         lost = [self.draft.report("behaviors", behavior).lost for behavior in behaviors]

@@ -1,4 +1,4 @@
-"""The texts and phrases of a project by language, and what is missing in one."""
+"""The texts and phrases of a project by language, and those that are missing in a language."""
 
 import re
 from collections.abc import Iterator, Mapping, Sequence

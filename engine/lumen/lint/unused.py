@@ -216,7 +216,7 @@ def _say_alike(report: DocumentReport, path: NodePath, names: Iterable[str]) -> 
 
 
 def _alike(names: Iterable[str]) -> Iterator[tuple[str, str]]:
-    """Yield each name that differs only in case from an earlier one, with the earlier one."""
+    """Yield each name that differs only in case from an earlier one, with the earlier name."""
     seen: dict[str, str] = {}
     for name in names:
         other = seen.setdefault(name.casefold(), name)

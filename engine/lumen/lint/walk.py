@@ -42,13 +42,13 @@ class ExpressionSite(NamedTuple):
     text: Expression | Template
     """The expression, with its place."""
     transition: Transition | None
-    """The transition that it belongs to; None for any other part of a state."""
+    """The transition to which the expression belongs; None for any other part of a state."""
     guard: bool = False
     """Whether the expression is a condition."""
     key: str = ""
-    """The context key to which `assign` assigns its value; empty for other expressions."""
+    """The context key to which `assign` assigns the expression's value; empty for other expressions."""
     expected: Mapping[str, Any] | None = None
-    """The JSON Schema that its value must fit, if neither `guard` nor `key` implies one."""
+    """The JSON Schema that the expression's value must fit, if neither `guard` nor `key` implies one."""
 
 
 def action_sites(machine: MachineDefinition) -> tuple[ActionSite, ...]:

@@ -37,7 +37,7 @@ class WrittenPhrase(NamedTuple):
 
 
 def word_tables(draft: ProjectDraft) -> Iterator[WordTables]:
-    """Yield the tables of each behaviour and each words file; a behaviour's do not include those that it borrows."""
+    """Yield the tables of each behaviour and each words file; borrowed tables are not part of a behaviour's own."""
     for name, machine in draft.behaviors.items():
 
         def own(key: str, table: Mapping[str, Any], borrowed: Any = machine.borrowed) -> dict[str, Any]:

@@ -20,7 +20,7 @@ MAX_FITS = 50
 """The greatest number of rounds of changes: one change may require another, and each brings the motion closer."""
 
 SPEED_MARGIN = 1.005
-"""Factor on the time that a joint needs, so that rounding does not make it too fast again."""
+"""Factor on the time that a joint needs, so that rounding does not make the joint too fast again."""
 
 
 NOWHERE: Mapping[str, float] = MappingProxyType({})

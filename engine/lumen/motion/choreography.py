@@ -39,7 +39,7 @@ def at_speed(motion: MotionDefinition, speed: float) -> MotionDefinition:
 
 
 def placed(motion: MotionDefinition, where: NodePath) -> MotionDefinition:
-    """Return the motion with `where` as the place of every key and cue, for one that another file plays."""
+    """Return the motion with `where` as the place of every key and cue, for a motion that another file plays."""
     tracks = {joint: tuple(replace(key, where=where) for key in keys) for joint, keys in motion.tracks.items()}
     return replace(motion, tracks=tracks, cues=tuple(replace(cue, where=where) for cue in motion.cues))
 

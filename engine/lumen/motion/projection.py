@@ -59,7 +59,7 @@ def after_turning(
 ) -> tuple[float, float] | None:
     """Return the pixel of a distant object, seen at `pixel`, after the head turns from one (yaw, pitch) to another.
 
-    It may lie outside the image; None if the object is no longer in front of the camera.
+    The pixel may lie outside the image; None if the object is no longer in front of the camera.
     """
     y = (1 - 2 * pixel[0] / camera.width) * tan(camera.horizontal_fov / 2)
     z = (1 - 2 * pixel[1] / camera.height) * tan(camera.vertical_fov / 2)

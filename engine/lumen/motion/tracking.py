@@ -34,7 +34,7 @@ STILL_TIME, STILL_ANGLE = 0.12, 0.006
 """A joint is steady if neither its pose nor its command changed by more than this angle [rad] for this time [s]."""
 
 MAX_SAG = 0.035
-"""Greatest offset from the commanded angle due to weight and friction [rad]; a greater one has another cause."""
+"""Greatest offset from the commanded angle due to weight and friction [rad]; a greater offset has another cause."""
 
 SAG_LEARNING_RATE = 0.4
 """Weight of a new measurement of the sag: the head may still be moving."""

@@ -1,8 +1,8 @@
 """Parse a changed document again, but only the block around the lines that have changed.
 
-All other lines become empty, except the keys around the block and the one after it, which keep the indentation. The
-usual parser reads the block, with its places, and the result is inserted into the previous document. If that might
-differ from a complete parse, the whole file is parsed instead.
+All other lines become empty, except the keys around the block and the key after it, which keep the indentation. The
+usual parser reads the block, with its places, and the result is inserted into the previous document. If the result
+might differ from that of a complete parse, the whole file is parsed instead.
 """
 
 import re
@@ -87,7 +87,7 @@ def _fragment(before: Document, lines: list[str], path: NodePath) -> str:
 
 
 def _found(node: yaml.Node | None, depth: int, span: NodeSpan) -> tuple[yaml.Node, yaml.Node] | None:
-    """Return key and value of the block; None if its lines hold anything else."""
+    """Return the key and the value of the block; None if its lines contain anything else."""
     for inner in range(depth, -1, -1):
         if not isinstance(node, yaml.MappingNode) or node.flow_style or not node.value:
             return None

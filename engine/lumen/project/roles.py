@@ -44,7 +44,7 @@ class RoleNames:
         return here
 
     def tell_left_out(self, what: str) -> None:
-        """Report once all named roles that the body lacks; `what` is the item that leaves them out."""
+        """Report together all named roles that the body lacks; `what` is the item that leaves them out."""
         if lacking := {name: path for name, path in self._lacking.items() if name not in self._report.lost}:
             names = ", ".join(f"`{name}`" for name in lacking)
             hint = "if the body has these joints, name them under `roles` of the body"

@@ -1,6 +1,6 @@
 """Convert `for` of a state, which runs its content once for each entry of a list, to a statechart without `for`.
 
-A key of the context holds the current entry and those that are left. The state begins in an added final child. Whenever
+A key of the context holds the current entry and the remaining ones. The state begins in an added final child. Whenever
 the state is done and an entry is left, that entry becomes the current one, and the state begins with its first child.
 After the last entry, the file's own `onDone` applies. Expressions inside use `context.KEY.entry` in place of the
 entry's name in the file, such as `question`.
@@ -33,7 +33,10 @@ _WITHIN = (("states",), ("on",), ("hears",), ("after",), ("at",))
 
 
 class Rounds:
-    """The `for`s of one document, by the paths of their states. If `shared`, the shared keys are defined everywhere."""
+    """The `for`s of one document, by the paths of their states.
+
+    If `shared` is true, the shared keys are defined everywhere.
+    """
 
     def __init__(
         self, outline: BehaviorOutline, report: DocumentReport, context: Mapping[str, Any], *, shared: bool = False
@@ -63,7 +66,7 @@ class Rounds:
         return found
 
     def read(self, entry: OutlinedState, expression: ReadExpression) -> ForEach | None:
-        """Return the `for` of a state; None if it has none, or none that can be read."""
+        """Return the `for` of a state; None if the state has no `for`, or one that can't be read."""
         if entry.path not in self.keys:
             return None
         data, where = entry.data["for"], (*entry.where, "for")
@@ -74,11 +77,11 @@ class Rounds:
         return ForEach(each, data["as"], key, data.get("shuffle", False), data.get("most"), where)
 
     def elsewhere(self, name: str) -> str:
-        """Return the dotted path of the state whose `for` defines this name; empty if none does."""
+        """Return the dotted path of the state whose `for` defines this name; empty if no `for` does."""
         return next((".".join(map(str, at[1::2])) for at, (known, _) in self.by_place.items() if known == name), "")
 
     def _sound(self, entry: OutlinedState) -> bool:
-        """Return True if a state may have a `for` and its name is free; report it if not."""
+        """Return True if a state may have a `for` and its name is free; otherwise, report the fault."""
         name, where = entry.data["for"]["as"], (*entry.where, "for")
         if entry.kind is not StateKind.COMPOUND:
             if entry.kind in (StateKind.ATOMIC, StateKind.PARALLEL):

@@ -47,12 +47,12 @@ class RuleText(NamedTuple):
     antecedent: Antecedent
     consequents: tuple[Proposition, ...]
     weight: float
-    """The rule's weight from 0 to 1; 1 if the rule names none."""
+    """The rule's weight from 0 to 1; 1 if the rule has no `with`."""
     mentions: tuple[Mention, ...]
 
 
 class RuleSyntaxError(Exception):
-    """Raised if a text is not a rule; `word` is the first wrong one, empty if the rule ends too early."""
+    """Raised if a text is not a rule; `word` is the first wrong word, empty if the rule ends too early."""
 
     def __init__(self, message: str, word: RuleWord, hint: str = "") -> None:
         super().__init__(message)

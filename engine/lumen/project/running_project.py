@@ -93,7 +93,7 @@ def running_project(path: str | Path | None = None) -> Path:
 def project_to_run(path: str | Path | None = None) -> Path:
     """Return the result of `running_project`, after making the copy if it is needed and missing.
 
-    Raises UsageError if that fails, or as `find_project` does.
+    Raises UsageError if the copy can't be made, or as `find_project` does.
     """
     root = find_project(path)
     return _copied() if is_substituted(path) else root

@@ -108,7 +108,7 @@ def wording(error: Error, path: NodePath) -> tuple[str, str]:
 
 
 def describe(schema: Any) -> str:
-    """Return the description of a schema, with a short example if it has one."""
+    """Return the description of a schema, with a short example if the schema has one."""
     if not isinstance(schema, dict):
         return ""
     text = str(schema.get("description", "")).strip().rstrip(".")

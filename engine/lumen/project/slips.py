@@ -240,7 +240,7 @@ def _braces(line: _Line, marks: LineMarks) -> Iterator[Slip]:
 
 
 def colons(text: str, index: int) -> Iterator[Slip]:
-    """Yield slips about a key without its colon, or a value with one that YAML misreads."""
+    """Yield slips about a key without its colon, or a value whose colon YAML misreads."""
     line, item = _Line(text, index), r"^ *(?:- +)*"
     if found := re.search(rf"{item}(?:\{{ *)?(?P<key>{KEY})(?P<rest> +[^ :#].*| *)$", text):
         start, end, rest = *found.span("key"), found["rest"].strip()

@@ -49,7 +49,8 @@ def machine_from_dict(
 ) -> MachineDefinition:
     """Return the machine that a dict with the shape of a file describes. Raises ProjectError for its faults.
 
-    `behaviors` are those that it may invoke, by name; `words` are the words files that they may name.
+    `behaviors` are the behaviours that the machine may invoke, by name; `words` are the words files that these may
+    name.
     """
     return _Family(_Shelf.of_dicts({**behaviors, name: data}), _Shelf.of_dicts(words), _Shelf.of_dicts({})).head(name)
 
@@ -85,7 +86,7 @@ def supplied_words() -> BuiltFile[Words]:
 class _Family:
     """A behaviour and those that it invokes, at every depth.
 
-    `words` are the words files in their folder, `functions` those that they may call.
+    `words` are the words files in their folder; `functions` are the functions that they may call.
     """
 
     def __init__(self, behaviors: _Shelf, words: _Shelf, functions: _Shelf) -> None:
@@ -136,7 +137,7 @@ class _Family:
         return [invoke.behavior for state in machine.states.values() for invoke in state.invoke]
 
     def join(self, shelf: _Shelf) -> KnownFunctions:
-        """Return all functions; the faults of one count only if the behaviours call it."""
+        """Return all functions; the faults of a function count only if the behaviours call it."""
         read, faults = dict[str, BuiltFile[FunctionFile]](), list[Diagnostic]()
         for name in shelf.names:
             document, diagnostics = shelf.read(name)

@@ -89,7 +89,7 @@ def _performances(data: Mapping[str, Any], report: DocumentReport) -> dict[str, 
 
 
 def _performance(how: str, report: DocumentReport, where: NodePath) -> str | float:
-    """Return `fails`, `hangs`, or a duration [s]; one that can't be read is reported and counts as `fails`."""
+    """Return `fails`, `hangs`, or a duration [s]; a duration that can't be read is reported and counts as `fails`."""
     if how in ("fails", "hangs"):
         return how
     length = seconds(how)
@@ -194,7 +194,7 @@ SAY = "say"
 
 
 def build_sayings(data: Any, report: DocumentReport, *, name: str) -> SayingSet | None:
-    """Return the sayings in the data; None if it is not a map."""
+    """Return the sayings in the data; None if the data is not a map."""
     return SayingSet(name, tuple(_sayings(data))) if isinstance(data, Mapping) else None
 
 

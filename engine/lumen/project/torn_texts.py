@@ -13,7 +13,7 @@ def whole_text(document: Document, path: NodePath, *, by_language: bool = False)
     """Return the entry whose text continues in the key at `path`, quoted: `en: "Oh, step back"`; "" if no entry does.
 
     The rest of a text is a key without a colon, after an entry that is a text. If the rest contains a colon, it is a
-    key with a text; that counts only in a map `by_language`, for keys that are not languages.
+    key with a text; such a key counts only in a map `by_language`, if it is not a language.
     """
     around = document.find(path[:-1])
     if not path or not isinstance(around, dict) or path[-1] not in around:

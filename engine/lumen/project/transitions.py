@@ -51,8 +51,8 @@ class TransitionReader:
     ) -> list[OutlinedState] | None:
         """Return the states that a target or a list of targets names.
 
-        If one does not exist, or if they can't be active together, report that and return None. `written` is the target
-        as the file has it, if that differs.
+        If a state does not exist, or if the states can't be active together, report the fault and return None.
+        `written` is the target as the file has it, if that differs.
         """
         rows = _rows(body, where)
         shown = [text for _, text in _rows(written or body, where)]

@@ -33,7 +33,7 @@ class JointUnits(NamedTuple):
 
 
 def joint_units(data: Any) -> JointUnits:
-    """Return the units that the `units` of a file name; SI units if it names none."""
+    """Return the units that the `units` of a file name; SI units if the file names none."""
     units = data.get("units") if isinstance(data, Mapping) else None
     given = units if isinstance(units, Mapping) else {}
     return JointUnits(given.get("angle", "rad"), given.get("length", "m"))

@@ -31,7 +31,7 @@ from lumen.project.project_folders import (
 MAX_DEPTH = 3
 """The number of levels of an unread folder that are searched for its first file."""
 MAX_LISTED = 500
-"""The maximum number of entries of an unread folder that are looked at."""
+"""The maximum number of entries of an unread folder that are examined."""
 
 _SCHEMAS = MESSAGES.partition("/")[0]
 _SCHEMA_ENDING = ".schema.json"

@@ -19,9 +19,9 @@ class _Uses(NamedTuple):
     """The events and routes that a behaviour uses."""
 
     heard: Mapping[str, NodePath]
-    """The first place of each event for which it has a transition."""
+    """The first place of each event for which the behaviour has a transition."""
     published: Mapping[str, NodePath]
-    """The first place of each route that it publishes to."""
+    """The first place of each route to which the behaviour publishes."""
     made: frozenset[str]
     """The events that the behaviour declares, raises or sends, and those of its buttons."""
 

@@ -82,7 +82,7 @@ class _Variables:
         return (*self.data["inputs"], *outputs[: outputs.index(name)])
 
     def spans(self, name: str, low: float, high: float) -> bool:
-        """Return True if the range is not empty, and for an output finite; report it if not."""
+        """Return True if the range is not empty, and for an output finite; otherwise, report the range."""
         path: NodePath = (self.side, name, "range")
         if not low < high:
             hint = (

@@ -41,7 +41,7 @@ def place_of(document: Document, path: NodePath, text: str, offset: int, length:
 
 
 def _columns(document: Document, whole: Place, text: str) -> dict[int, tuple[int, int]]:
-    """Return the line and column of each visible character of the text, by its index; empty if one is not found."""
+    """Return the line and column of each visible character of the text, by its index; empty if any is not found."""
     lines = lines_of(document.text)
     first = lines[whole.line - 1] if document.text and whole.line <= len(lines) else ""
     line, column = whole.line, whole.column

@@ -13,11 +13,11 @@ from yaml.composer import ComposerError
 from lumen.project.document import MAX_NODE_DEPTH, MAX_NODES
 
 MAX_TAG_DIRECTIVES = 100
-"""The maximum number of tag directives; libyaml compares each with all before it."""
+"""The maximum number of tag directives; libyaml compares each directive with all before it."""
 
 _TEXT, _LIST, _MAP = "tag:yaml.org,2002:str", "tag:yaml.org,2002:seq", "tag:yaml.org,2002:map"
 PLAIN_TAGS = frozenset((_TEXT, _LIST, _MAP))
-"""The tags of nodes that have none in the file."""
+"""The tags of nodes that have no tag in the file."""
 
 
 class TooLargeError(Exception):

@@ -41,7 +41,7 @@ _MOST_NULS = 0.2
 
 
 def merge_conflict(file: str, text: str) -> Diagnostic | None:
-    """Return the finding about a file that holds both sides of a merge; None if it does not."""
+    """Return the finding about a file that holds both sides of a merge; None if the file does not."""
     begun = (_CONFLICT.match(line) for line in lines_of(text))
     line, found = next(((number, match) for number, match in enumerate(begun, 1) if match), (0, None))
     if found is None:

@@ -44,7 +44,7 @@ class MicrostepPlan(NamedTuple):
     """A microstep: the states to exit and enter, and the transitions to run."""
 
     taken: tuple[CompiledTransition, ...]
-    """The transitions that it takes, compiled."""
+    """The transitions that the microstep takes, compiled."""
     transitions: tuple[Transition, ...]
     """The definitions of these transitions."""
     exits: tuple[StateChange, ...]
@@ -54,9 +54,9 @@ class MicrostepPlan(NamedTuple):
     entries: tuple[StateChange, ...]
     """The states to enter, in entry order, without idle states."""
     exited: tuple[str, ...]
-    """The names of all states that it exits, in exit order."""
+    """The names of all states that the microstep exits, in exit order."""
     entered: tuple[str, ...]
-    """The names of all states that it enters, in entry order."""
+    """The names of all states that the microstep enters, in entry order."""
     history: History
     """The memory of history states afterwards."""
     target: "Configuration"

@@ -30,7 +30,7 @@ class PropertyMonitor:
     definition: Property
     machine: MachineDefinition
     since: float | None = None
-    """The time when it began to wait for `eventually` [s]; None while it does not wait."""
+    """The time when the monitor began to wait for `eventually` [s]; None while it does not wait."""
     begun: bool = False
     """True after the first step."""
     held: bool = False

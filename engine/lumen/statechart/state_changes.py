@@ -14,7 +14,7 @@ class StateChange(NamedTuple):
 
     node: StateNode
     active: Container[str]
-    """The names for which `In` is true while its actions run."""
+    """The names for which `In` is true while the state's actions run."""
     done: tuple[StateNode, ...] = ()
     """The ancestors that its entry finishes, the nearest first."""
 

@@ -1,4 +1,4 @@
-"""Writes actions into the text of a generated step, and tracks what later parts of the text need of them."""
+"""Writes actions into the text of a generated step, and tracks the facts on which later parts of the text rely."""
 
 from collections.abc import Callable, Container
 from copy import copy
@@ -90,7 +90,7 @@ class ActionText(StepText):
         raise NotImplementedError
 
     def either(self, condition: str, known: Certain, *ops: Op) -> None:
-        """Write all that follows if a condition is true; the text after it is for the case that it is false."""
+        """Write all that follows if a condition is true; the text written next is for the case that it is false."""
         with self.branch(condition):
             other = copy(known)
             other.first(*ops)

@@ -15,7 +15,7 @@ from lumen.statechart.step_code import WrittenStep, function_of
 from lumen.statechart.values import Snapshot
 
 MAX_LINES = 200
-"""The greatest number of lines of one function; longer ones are not generated."""
+"""The greatest number of lines of one function; longer functions are not generated."""
 MAX_DEPTH = 40
 """The greatest nesting depth of one function: Python's parser allows a hundred levels."""
 
@@ -34,7 +34,7 @@ _INDENT = "    "
 
 
 class NotPlainError(Exception):
-    """Raised if something can't be written into the text of a step."""
+    """Raised if a part of a step can't be written into its text."""
 
 
 class Sight(NamedTuple):

@@ -42,11 +42,11 @@ class StepWriter(ActionText):
         self.planner, self.apart, self.plain = planner, apart, False
 
     def heard(self, candidates: Candidates) -> WrittenStep | None:
-        """Return the function for an event with these candidates; None if no branch of it can be written."""
+        """Return the function for an event with these candidates; None if none of its branches can be written."""
         return self.written(self.select(candidates))
 
     def taken(self, enabled: Enabled) -> WrittenStep | None:
-        """Return the function that takes these transitions; None if no branch of it can be written."""
+        """Return the function that takes these transitions; None if none of its branches can be written."""
         return self.written(partial(self.take, enabled))
 
     def elapsed(self, event: str) -> WrittenStep | None:

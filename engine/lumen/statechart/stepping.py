@@ -101,7 +101,7 @@ def finished(machine: MachineDefinition, snapshot: Snapshot) -> bool:
 def due(snapshot: Snapshot) -> Event | None:
     """Return the event of the timer that ends next, at its time; None if there are no timers.
 
-    Timers of invoked behaviours count; of two with the same time, the outer one comes first.
+    Timers of invoked behaviours count; of two timers with the same time, the outer one comes first.
     """
     found = None
     if snapshot.timers:

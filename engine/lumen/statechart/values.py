@@ -20,7 +20,7 @@ class Timer(NamedTuple):
     due_ns: int
     """When the event happens [ns]."""
     delay_ns: int
-    """The time between its start and `due_ns` [ns]."""
+    """The time between the timer's start and `due_ns` [ns]."""
     event: str
     data: Any = None
     state: str = ""
@@ -31,7 +31,7 @@ class Timer(NamedTuple):
 
     @property
     def due(self) -> float:
-        """Return when it happens [s]."""
+        """Return when the event happens [s]."""
         return in_seconds(self.due_ns)
 
     @property
@@ -112,7 +112,7 @@ class Snapshot(NamedTuple):
     """The names of the active states except the root: the alias if there is one, else the path."""
     context: Mapping[str, Any]
     at: float = 0.0
-    """The time of the last event [s], or a later one at which the snapshot was taken."""
+    """The time of the last event [s], or a later time at which the snapshot was taken."""
     language: str = ""
     timers: tuple[Timer, ...] = ()
     doing: Mapping[str, Within] = {}
@@ -125,11 +125,11 @@ class Snapshot(NamedTuple):
     epoch: float = 0.0
     """The time of `at` = 0 [s since 1970, UTC]."""
     invoked: Mapping[str, Invoked] = {}
-    """The behaviours that run inside it, by id; they share its time, language, counters and generator."""
+    """The behaviours that run inside this one, by id; they share its time, language, counters and generator."""
     halted: Mapping[str, Halted] = {}
     """The position of each `do` with a `resume` when its state was last left, by path."""
     place: str = ""
-    """The place of the robot after the last `arrived` or `left`; empty if it is at none."""
+    """The place of the robot after the last `arrived` or `left`; empty if the robot is at no place."""
     timezone: str = ""
     """The IANA name of the time zone of the wall clock."""
     output: Any = None
@@ -140,7 +140,7 @@ class Step(NamedTuple):
     """One macrostep: its cause, the states exited and entered (without the root), its commands and its result."""
 
     event: Event | None
-    """The event that caused it; None for the first step."""
+    """The event that caused the step; None for the first step."""
     exited: tuple[str, ...]
     entered: tuple[str, ...]
     commands: tuple[Command, ...]

@@ -10,7 +10,7 @@ from lumen.project.files import Unreadable
 from lumen.run.linting.findings import Findings
 
 MAX_EXCERPT_WIDTH = 140
-"""The maximum number of characters shown of a line; of a longer one, those around the word are shown."""
+"""The maximum number of characters shown of a line; of a longer line, those around the word are shown."""
 
 
 def render(found: Sequence[Findings], *, coloured: bool = False) -> str:

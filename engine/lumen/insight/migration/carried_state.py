@@ -39,7 +39,7 @@ def carried_round(old: MachineDefinition, new: MachineDefinition, loop: ForEach,
 def _now(entry: Any, before: list[Any], after: list[Any]) -> Any:
     """Return an old entry's form in the new list: the entry itself if it is still there, else the new one at its index.
 
-    Return None if there is no new entry at that index.
+    The result is None if there is no new entry at that index.
     """
     if entry in after or entry not in before:
         return entry if entry in after else None

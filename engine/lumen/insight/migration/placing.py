@@ -145,7 +145,7 @@ class _Placing:
     def unplaced(self) -> StateNode | None:
         """Return a compound state that lacks a single active child and can't enter its initial state; else None.
 
-        If there are several, it is the outermost.
+        If there are several such states, the outermost is returned.
         """
         standing = self.standing()
         begins = {self.kept[leaf] for leaf in _leaves(self.active) if leaf in self.kept} | set(self.goals)

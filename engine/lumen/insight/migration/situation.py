@@ -62,7 +62,7 @@ class MigrationOptions(NamedTuple):
     back: bool = False
     """Whether the new bundle ran before the old one."""
     languages: Sequence[str] = ()
-    """The languages that may be spoken, the first of which replaces one that is gone; any language if empty."""
+    """The languages that may be spoken, the first of which replaces a removed language; any language if empty."""
     is_invoked: bool = False
     """Whether another behaviour invoked this one."""
 
@@ -82,7 +82,7 @@ class Situation:
         self.identity = Identity(old, new, back=options.back)
         history = carried_state.history(snapshot.history, self.new.chart, self.identity)
         self.placement = place(self.new.chart, self.start.nodes, self.identity, history)
-        """The states that stay, or the one that has no place."""
+        """The placement of the states, or the state that has no place."""
 
     def refusal(self, unplaced: Unplaced, behavior: str) -> Refusal:
         """Return the refusal for a state without a place, with a hint on how to fix the file."""
@@ -117,7 +117,7 @@ class Situation:
         )
 
     def busy(self) -> MigrationDelay | None:
-        """Return a delay for the first removed state whose `do` is under way; None if there is none.
+        """Return a delay for the first removed state whose `do` is under way; None if there is no such state.
 
         Such a `do` may still lead to another state.
         """
@@ -165,5 +165,5 @@ def _gone(node: StateNode) -> MigrationDelay:
 
 
 def _is_busy(snapshot: Snapshot) -> bool:
-    """Return whether a `do` is under way in a behaviour or in one that it has invoked."""
+    """Return whether a `do` is under way in a behaviour or in a behaviour that it has invoked."""
     return bool(snapshot.doing) or any(_is_busy(child.snapshot) for child in snapshot.invoked.values())

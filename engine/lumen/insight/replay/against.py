@@ -85,7 +85,10 @@ def played_against(
 
 
 def _verdict(play: "OtherPlay", then: list[tuple[float, Any]], trouble: str, home: str) -> VisitVerdict:
-    """Compare a play with another course; `home` is where that ended (empty for anywhere), `trouble` its error."""
+    """Compare a play with another course.
+
+    `home` is the state in which the other course ended (empty for any state), and `trouble` is its error.
+    """
     if play.trouble != trouble:
         return VisitVerdict(ENDS, play.steps, play.at, trouble, play.trouble or "no such error")
     was, now = list(noticed(then)), list(noticed(play.done))

@@ -36,7 +36,7 @@ class JournalInput(NamedTuple):
     """An event and the step that it caused."""
 
     position: int
-    """Its position in the journal."""
+    """The entry's position in the journal."""
     how: How
     """How the event reached the behaviour."""
     event: Event
@@ -69,9 +69,9 @@ class JournalJump(NamedTuple):
     snapshot: Mapping[str, Any] | None
     """The frozen snapshot; None if it could not be written."""
     commands: tuple[Any, ...] = ()
-    """The commands that were performed for it, as JSON data."""
+    """The commands that were performed at this point, as JSON data."""
     said: Mapping[str, Any] = {}
-    """More details: the arguments of a start, the person who requested it, the number of entries that were lost."""
+    """Details: the arguments of a start, the person who requested the jump, the number of entries that were lost."""
     redacted: bool = False
     """Whether a visitor's name was removed because that visitor's data was deleted."""
 

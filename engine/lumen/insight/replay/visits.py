@@ -1,7 +1,7 @@
-"""The extent of a visit: from the step by which the behaviour leaves its home to the one by which it returns.
+"""The extent of a visit: from the step by which the behaviour leaves its home to the step by which it returns.
 
-Home is the innermost state in which a behaviour begins; with regions, that of the first one in the order of the file.
-`lumen test --explore` looks for a way back to the same state.
+Home is the innermost state in which a behaviour begins; with regions, the one in the first region in the order of the
+file. `lumen test --explore` looks for a way back to the same state.
 """
 
 from collections.abc import Iterable, Iterator, Mapping
@@ -25,13 +25,13 @@ class RecordedVisit(NamedTuple):
     number: int
     """The visit's number in the journal, from 1."""
     first: int
-    """The position of its first entry."""
+    """The position of the visit's first entry."""
     last: int
-    """The position of its last entry."""
+    """The position of the visit's last entry."""
     began: float
-    """The time of its beginning [s since 1970, in UTC]."""
+    """The time at which the visit began [s since 1970, in UTC]."""
     ended: float
-    """The time of its end [s since 1970, in UTC]."""
+    """The time at which the visit ended [s since 1970, in UTC]."""
     home: JournalJump | None = None
     """The jump before the visit, with the behaviour at home; None if the journal lacks it.
 
@@ -42,7 +42,7 @@ class RecordedVisit(NamedTuple):
     whole: bool = False
     """Whether the behaviour came back home and no entry is missing."""
     redacted: bool = False
-    """Whether a visitor's data was deleted from it."""
+    """Whether a visitor's data was deleted from the visit."""
 
 
 def waiting_state(machine: MachineDefinition) -> str:
@@ -69,7 +69,7 @@ class VisitWatch:
         self.at = 0.0
 
     def take(self, entry: RecordedEntry, machine: MachineDefinition | None) -> bool:
-        """Return whether the entry is part of a visit; `machine` is the one that runs, None if unknown.
+        """Return whether the entry is part of a visit; `machine` is the machine that runs, None if unknown.
 
         Afterwards `away` is whether the visit continues, and `at` is the time of the entry [s since 1970, in UTC].
         """

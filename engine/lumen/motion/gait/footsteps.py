@@ -21,7 +21,7 @@ class Footstep(NamedTuple):
 
 
 def middle(feet: Feet) -> Pose:
-    """Return the pose midway between the feet, which is that of the robot."""
+    """Return the pose midway between the feet, which is the robot's pose."""
     return feet["L"].toward(feet["R"], 0.5)
 
 
@@ -91,7 +91,7 @@ class Velocity(NamedTuple):
     theta: float = 0.0
 
     def within(self, pace: GaitParameters) -> "Velocity":
-        """Return the velocity, scaled down to the maximum of the pace if it exceeds that."""
+        """Return the velocity, scaled down to the maximum of the pace if it is higher."""
         haste = self._haste(pace)
         return Velocity(*(part / max(1.0, haste) for part in self))
 

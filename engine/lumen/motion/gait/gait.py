@@ -31,7 +31,7 @@ class StepTracker:
         self._north = heading - left - wrap(right - left) / 2
 
     def look(self, next_side: Side, measured: Mapping[str, float]) -> None:
-        """Add a measurement while both feet are on the ground; `next_side` leaves it next."""
+        """Add a measurement while both feet are on the ground; `next_side` is the foot that leaves the ground next."""
         self._seen.append(self._legs.foot_from(next_side, measured))
 
     def stands(self, bearing: Side, feet: Feet, measured: Mapping[str, float], heading: float) -> Pose:
@@ -123,7 +123,7 @@ class Gait:
 
     @property
     def coming(self) -> list[Footstep]:
-        """The remaining steps as planned now; for a velocity, the next step and one that ends the walk."""
+        """The remaining steps as planned now; for a velocity, the next step and a step that ends the walk."""
         if isinstance(self.goal, Velocity):
             step = strides(self.feet, self._speed, self._side, self.pace, 1)[0]
             return [step, self._beside(step.pose, other(step.side))]
@@ -136,7 +136,7 @@ class Gait:
     def tick(self, measured: Mapping[str, float], heading: float) -> GaitTick | None:
         """Return the next output for the legs; None once the robot stands.
 
-        `measured` are the present leg angles, `heading` that of the torso, from any fixed zero [rad].
+        `measured` are the present leg angles, `heading` is the torso's heading, from any fixed zero [rad].
         """
         if self._tracker is None:
             self.face(measured, heading)
@@ -211,7 +211,7 @@ class Gait:
         return self._planner.settle(self.feet, self._dcm, self._zmp)
 
     def _next(self) -> list[Footstep]:
-        """Return the next steps; a single one is the last."""
+        """Return the next steps; if there is only one, it is the last."""
         if self._stopping:
             return [self._closing()]
         if isinstance(self.goal, Velocity) and any(self.goal):

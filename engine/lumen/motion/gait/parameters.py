@@ -44,7 +44,7 @@ class GaitParameters:
     sole_ahead: float = 0.035
     """Greatest forward shift of the bearing point that a plan may use."""
     sole_aside: float = 0.015
-    """Greatest sideways shift of it, on one sole."""
+    """Greatest sideways shift of the bearing point, on one sole."""
     shift: float = 0.35
     """Time for the weight to shift before the first step."""
     settle: float = 0.35
@@ -61,7 +61,7 @@ class Paces(NamedTuple):
     brisk: GaitParameters = GaitParameters(
         double=0.04, single=0.3, forward=0.081, sideways=0.061, turn=0.4, lift=0.032, widest=0.212
     )
-    """For walks at a requested speed; found by a search (docs/decisions/074): faster, but less accurate at its end."""
+    """For walks at a requested speed; found by a search (docs/decisions/074): faster, but less accurate at the goal."""
     catching: GaitParameters = GaitParameters(torso=0.3)
     """For steps that catch a fall: the torso is lower, so that feet far apart reach the ground."""
 

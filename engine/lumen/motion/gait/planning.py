@@ -13,7 +13,7 @@ from lumen.motion.gait.swing import Swing
 
 @dataclass(slots=True)
 class GaitPhase:
-    """A step, or the settling after the last one."""
+    """A step, or the settling after the last step."""
 
     zmp: list[complex]
     """The bearing point at each tick, x + iy [m]."""

@@ -19,7 +19,7 @@ class Pose(NamedTuple):
 
     @property
     def ahead(self) -> complex:
-        """The unit vector of its heading, as a complex number."""
+        """The unit vector of the heading, as a complex number."""
         return rect(1.0, self.theta)
 
     def then(self, other: "Pose") -> "Pose":

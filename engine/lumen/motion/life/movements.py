@@ -140,7 +140,7 @@ TOUCHED = {
     "HandRightBack": (-0.6, 0.3), "HandRightLeft": (-0.6, 0.3), "HandRightRight": (-0.6, 0.3),
     "LeftBumper": (0.25, 0.4), "RightBumper": (-0.25, 0.4), "ChestButton": (0.0, 0.35),
 }  # fmt: skip
-"""The direction of a person who touches NAO there: yaw to the left, pitch down [rad]."""
+"""The direction of a person who touches this sensor of a NAO: yaw to the left, pitch down [rad]."""
 
 
 def glance(glances: Glances, seed: int, t: float) -> tuple[float, float]:
