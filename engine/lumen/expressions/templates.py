@@ -83,7 +83,7 @@ def split_template(text: str) -> list[str | Placeholder]:
 def _closing(text: str, offset: int) -> int:
     """Return the offset of the `}}` that ends the placeholder, outside of maps and texts.
 
-    Raises ExpressionError if there is none.
+    Raises ExpressionError if it is missing.
     """
     start, level = offset - 2, 0
     while offset < len(text):
@@ -143,7 +143,7 @@ def check_template(text: str, *, context: Mapping[str, Any] | None, **around: An
 
 
 def _meant(hole: Placeholder, findings: list[ExpressionFinding]) -> list[ExpressionFinding]:
-    """Return the findings in a placeholder; for three braces, as in Handlebars, one about the third brace."""
+    """Return the findings in a placeholder; for three braces, as in Handlebars, one finding about the third brace."""
     inner = hole.source.removeprefix("{").removesuffix("}").strip()
     if not hole.source.startswith("{") or not any(f.code == EXPRESSION_SYNTAX for f in findings):
         return findings

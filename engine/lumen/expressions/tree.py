@@ -140,7 +140,7 @@ def children(node: ExpressionNode) -> tuple[ExpressionNode, ...]:
 
 
 def rebuilt(node: ExpressionNode, change: Callable[[ExpressionNode], ExpressionNode]) -> ExpressionNode:
-    """Return the node with each child replaced by what `change` returns for it."""
+    """Return the node with each child replaced by the result of `change` for this child."""
     match node:
         case FieldAccess(base=base):
             return replace(node, base=change(base))

@@ -87,7 +87,7 @@ def type_of_schema(schema: object) -> ValueType:
 
 
 def type_of_values(values: Iterable[Any]) -> ValueType:
-    """Return the type of a value that is one of these; ANY if one of them is not JSON data."""
+    """Return the type of a value that is one of these; ANY if any of them is not JSON data."""
     try:
         return of(*(kind_of(value) for value in values))
     except FaultError:

@@ -57,8 +57,8 @@ def local_time(moment: int, timezone: str) -> datetime:
 def next_moment(schedule: Schedule, after: int, timezone: str) -> int | None:
     """Return the first moment of a schedule that is later than `after`; None if the schedule is over.
 
-    A time of day occurs when the wall clock first shows it or a later one. A time that is skipped in spring occurs at
-    the end of the gap; a time that is repeated in autumn occurs only the first time.
+    A time of day occurs when the wall clock first shows this time or a later one. A time that is skipped in spring
+    occurs at the end of the gap; a time that is repeated in autumn occurs only the first time.
     """
     region = zone(timezone)
     today = local_time(after, timezone).date()
@@ -71,11 +71,11 @@ def next_moment(schedule: Schedule, after: int, timezone: str) -> int | None:
 
 
 def readjusted(due: int, schedule: Schedule, was: int, now: int, timezone: str) -> int | None:
-    """Return the next moment of a schedule after the clock was set from `was` to `now`; `due` was the next one before.
+    """Return the next moment of a schedule after the clock was set from `was` to `now`; None if the schedule is over.
 
-    After a correction of up to an hour it stays `due`. After a greater one it is the next moment from `now`, or, if the
-    clock was put forward, from the midnight before `now` or from `was`, whichever is later; a moment that has passed
-    today is due at once. Return None if the schedule is over.
+    `due` was the next moment before. After a correction of up to an hour, the result is `due`. After a greater
+    correction, it is the next moment from `now`; if the clock was put forward, it is the next one from the midnight
+    before `now` or from `was`, whichever is later, and a moment that has passed today is due at once.
     """
     if abs(now - was) <= 3600 * MICROSECONDS:
         return due

@@ -1,4 +1,4 @@
-"""Messages on the bus that are unusual enough to save what led to them."""
+"""Unusual messages on the bus, at which the recording of the time before is saved."""
 
 from lumen.language import operator_requests
 from lumen.language.routing_keys import CONFIG_STATUS, INTERNAL_ALIASES, OPERATOR_REQUEST, key_of_robot

@@ -1,8 +1,8 @@
 """One file of the journal of inputs: a header line, then frames of entries, each of which is a line of JSON.
 
 A frame is its length and the CRC-32 of its content (4 bytes each, little-endian), and the content: a piece of one
-deflate stream that spans all frames, flushed at the end of each. So text that occurred before is short later,
-and every frame can be read as soon as it is there.
+deflate stream that spans all frames, flushed at the end of each. So repeated text takes little space, and every frame
+can be read as soon as it is written.
 """
 
 import json
@@ -61,7 +61,7 @@ JOURNAL_VERSION = 1
 JOURNAL_SUFFIX = ".journal"
 MAX_HEADER_BYTES = 10_000
 MAX_FILE_BYTES = 256_000_000
-"""The largest file that is read [bytes]; the writer begins a new one long before."""
+"""The largest file that is read [bytes]; the writer begins a new file at a much smaller size."""
 
 encode = json.JSONEncoder(ensure_ascii=False, separators=(",", ":")).encode
 
@@ -70,13 +70,13 @@ class JournalHeader(NamedTuple):
     """The first line of a file."""
 
     first: int
-    """The position of its first entry, which holds the state of the behaviour."""
+    """The position of the file's first entry, which holds the state of the behaviour."""
     run: str
-    """The id of the run that wrote it."""
+    """The id of the run that wrote the file."""
     bundle: str
     """The hash of the files that ran."""
     began: float
-    """When it was opened [s since 1970]."""
+    """When the file was opened [s since 1970]."""
     story: str = ""
     """The name of the story that was played, if any."""
     version: int = JOURNAL_VERSION
@@ -140,7 +140,10 @@ def read_journal(file: Path) -> JournalContent:
 
 
 def read_lines(file: Path) -> list[bytes]:
-    """Return the lines of its entries, the first at the header's position. Raises JournalError for any other file."""
+    """Return the lines of a file's entries, the first at the header's position.
+
+    Raises JournalError for any other file.
+    """
     data = _bytes(file)
     end = _header_end(data)
     read_header(data[:end], file.name)
@@ -165,7 +168,7 @@ def read_content(data: bytes, name: str) -> JournalContent:
 def each_entry(file: Path) -> Iterator[RecordedEntry]:
     """Yield the entries of `read_journal` one by one: a file of a busy day is large once it is unpacked.
 
-    Raises JournalError if it is not a journal.
+    Raises JournalError if the file is not a journal.
     """
     data = _bytes(file)
     end = _header_end(data)
@@ -194,7 +197,7 @@ def _bytes(file: Path) -> bytes:
 
 
 def entry_of(line: bytes, position: int) -> RecordedEntry:
-    """Return the entry in a line of a frame, with its position. Raises JournalError if it has no entry."""
+    """Return the entry in a line of a frame, with its position. Raises JournalError if the line has no entry."""
     return read_entry(_decoded(line), position)
 
 

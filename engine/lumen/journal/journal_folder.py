@@ -18,7 +18,7 @@ from lumen.upkeep.own_folders import NO_LINK, private_folder
 
 JOURNAL_FOLDER = "journal"
 REHEARSED_FOLDER = "rehearsed"
-"""The folder within it for runs of stories and programs, which must not displace visits."""
+"""The subfolder for runs of stories and programs, which must not displace visits."""
 DAY = 86400.0
 MEGABYTE = 1_000_000
 
@@ -44,7 +44,7 @@ class JournalFolder:
         return 0
 
     def open(self, header: JournalHeader) -> BinaryIO:
-        """Create and return a file with this header, in place of one of this run without entries. Raises OSError."""
+        """Create and return a file with this header; it replaces a file of this run without entries. Raises OSError."""
         private_folder(self.folder)
         name = f"{header.first:012d}-{file_stamp(header.began)}-{header.run[:8]}{JOURNAL_SUFFIX}"
         handle = os.open(self.folder / name, os.O_WRONLY | os.O_CREAT | os.O_TRUNC | os.O_APPEND | NO_LINK, 0o600)
@@ -113,7 +113,7 @@ class JournalTail:
 
     @property
     def first(self) -> int:
-        """The position of the oldest entry here; `next` if it is empty."""
+        """The position of the oldest entry in memory; `next` if there are no entries."""
         with self._lock:
             return self._next - len(self._lines)
 
@@ -130,14 +130,14 @@ class JournalTail:
                 self._size -= len(self._lines.popleft())
 
     def since(self, position: int, most: int) -> list[PositionedLine]:
-        """Return up to `most` entries from `position` on, or from the oldest here if that is gone."""
+        """Return up to `most` entries from `position` on, or from the oldest in memory if the entry there is gone."""
         with self._lock:
             first = self._next - len(self._lines)
             begin = max(position - first, 0)
             return list(enumerate(islice(self._lines, begin, begin + most), first + begin))
 
     def forget(self, person: PersonName) -> None:
-        """Remove a visitor's name. Call it on the thread that adds.
+        """Remove a visitor's name. Call it on the thread that adds entries.
 
         Earlier entries may have named the visitor, so no digest is kept until a keyframe without the name.
         """

@@ -44,7 +44,7 @@ class Jumped(NamedTuple):
 
 
 class JournalPen:
-    """Encodes entries, and remembers the behaviour's state after the last one."""
+    """Encodes entries, and remembers the behaviour's state after the last entry."""
 
     def __init__(self) -> None:
         self._digest = StepDigest()

@@ -46,8 +46,8 @@ def hears(project: Project) -> bool:
 class JournalWriter:
     """Writes steps and jumps to the files of a folder, as an `InputRecorder`; `story` names the story played, if any.
 
-    The last entries are also in `tail`, for frequent requests. Without a folder they are only there, and positions
-    count from 0.
+    The last entries are also in `tail`, for frequent requests. Without a folder, entries are only in `tail`, and
+    positions count from 0.
 
     If the disk refuses, or is too slow for `MAX_WAITING` entries, entries are lost: `lost` counts them, a gap marks
     them in the journal, and `trouble` is the reason. If the run is `rehearsed`, a step waits for a slow disk, and a
@@ -102,7 +102,7 @@ class JournalWriter:
         self._wake.set()
 
     def flush(self, patience: float = 5.0) -> bool:
-        """Wait up to `patience` [s] until all that is queued is written; return True if it is."""
+        """Wait up to `patience` [s] until the whole queue is written; return True if it was written."""
         written = threading.Event()
         self._waiting.append(written)  # queued, so that it is set only after everything queued before it
         self._wake.set()

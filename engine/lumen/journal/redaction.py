@@ -14,11 +14,11 @@ LINES_PER_FRAME = 1000
 
 
 def redact(file: Path, person: PersonName) -> int:
-    """Remove a visitor's name from a file, which is replaced as a whole; return how many entries named them.
+    """Remove a visitor's name from a file, which is replaced as a whole; return how many entries named the visitor.
 
     Unreadable content is deleted, because it may hold the name; a file that is unreadable as a whole counts as one
-    entry, unless it is empty. The file keeps its time, so it is not kept longer. Raises ModuleError if it can't be
-    replaced or deleted.
+    entry, unless it is empty. The file keeps its time, so it is not kept longer. Raises ModuleError if the file can't
+    be replaced or deleted.
     """
     try:
         content = read_journal(file)
@@ -46,8 +46,8 @@ def names(entry: RecordedEntry, person: PersonName) -> bool:
 def redacted(entries: Iterable[RecordedEntry], person: PersonName, *, within: bool = False) -> Iterator[RecordedEntry]:
     """Yield the entries without the name.
 
-    From the first entry that has it, or from the beginning if `within`, until a keyframe without it, no digest is
-    kept: names could be guessed by comparing digests.
+    From the first entry with the name, or from the beginning if `within`, until a keyframe without the name, no digest
+    is kept: names could be guessed by comparing digests.
     """
     for entry in entries:
         found = names(entry, person)

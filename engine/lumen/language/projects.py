@@ -121,7 +121,10 @@ class Project:
         return replace(self, root=root, verbs=verbs)
 
     def key_of(self, route: str) -> str:
-        """Return this robot's routing key of a route of the project or of Lumen. Raises KeyError for an unknown one."""
+        """Return this robot's routing key of a route of the project or of Lumen.
+
+        Raises KeyError for an unknown route.
+        """
         row = self.routes.get(route)
         return row.key_for(self.robot) if row else default_key(route, self.robot)
 

@@ -74,7 +74,10 @@ def aim_within(aim: Aim, body: Body, here: Mapping[str, float] = NOWHERE) -> Aim
 
 
 def analyse(motions: Iterable[MotionDefinition], body: Body) -> None:
-    """Analyse motions before they are played, because a dense one takes longer than one tick of the robot's loop."""
+    """Analyse motions before they are played.
+
+    The analysis of a dense motion takes longer than one tick of the robot's loop.
+    """
     for motion in motions:
         _kept(motion, body)
 

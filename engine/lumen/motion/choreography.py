@@ -59,7 +59,10 @@ def trailing(motion: MotionDefinition, lags: Mapping[str, float]) -> MotionDefin
 
 
 def joined(parts: Iterable[tuple[float, MotionDefinition]], duration: float) -> MotionDefinition:
-    """Return one motion made of parts, each with its start time [s]; they must be in order and must not overlap."""
+    """Return one motion made of parts, each with its start time [s].
+
+    The parts must be in order and must not overlap.
+    """
     tracks: dict[str, list[Keyframe]] = {}
     cues: list[Cue] = []
     for begin, part in parts:

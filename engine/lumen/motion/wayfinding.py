@@ -74,7 +74,7 @@ LEAVING = 1.2
 
 
 def next_leg(here: Whereabouts, place: HallPlace) -> Walk | None:
-    """Return the next walk towards that place; None if the robot is there, as far as it can tell."""
+    """Return the next walk towards that place; None if the robot is there by its estimate."""
     dx, dy = place.x - here.x, place.y - here.y
     distance, c, s = hypot(dx, dy), cos(here.theta), sin(here.theta)
     ahead, left = dx * c + dy * s, dy * c - dx * s
@@ -103,7 +103,8 @@ def distance_to(here: Whereabouts, place: HallPlace) -> float:
 def place_at(here: Whereabouts, places: Mapping[str, HallPlace], before: str) -> str:
     """Return the name of the robot's place; empty if it is not at any of them.
 
-    If there are several, the nearest counts; but `before`, its last place, stays as long as the robot has not left it.
+    Of several places the nearest counts; but `before`, the robot's last place, stays as long as the robot has not left
+    it.
     """
     if before in places and distance_to(here, places[before]) <= LEAVING * places[before].within:
         return before

@@ -104,7 +104,10 @@ def refusal(value: Any, check: TypeCheck | None) -> str:
 
 
 def checked(name: str, checks: Mapping[str, TypeCheck | None], given: Mapping[str, Any]) -> Mapping[str, Any]:
-    """Return the values given for context keys of the machine of that name; raise UsageError if one does not fit."""
+    """Return the values given for context keys of the machine called `name`.
+
+    Raises UsageError if a value does not fit.
+    """
     for key, value in given.items():
         if key not in checks:
             hint = did_you_mean(key, checks)

@@ -60,7 +60,7 @@ class Within(NamedTuple):
 
 
 class Fork(NamedTuple):
-    """The position of a `do` inside a `parallel` or `ask`: one for each branch, None for branches that have ended."""
+    """The position of a `do` inside a `parallel` or `ask`: that of each branch, None for branches that have ended."""
 
     branches: "tuple[Position | None, ...]"
 

@@ -11,7 +11,7 @@ from lumen.talk.speech import Speech
 NEAR = 5
 """The greatest number of words, not counting fillers, between a negation and the words that it negates."""
 NEAR_AFTER = 2
-"""The same for a negation that follows the words."""
+"""The greatest number of such words between the negated words and a negation that follows them."""
 MAX_NAME_WORDS = 4
 _ENDS, _SLOTS = 0, 1
 """Keys of a node of the trie besides words: for the forms that end there, and for the slots that follow."""
@@ -35,17 +35,17 @@ class Entry(NamedTuple):
 
     name: str
     row: int
-    """The number of its row in a table of answers; 0 for phrases."""
+    """The number of the form's row in a table of answers; 0 for phrases."""
     strength: int
-    """The number of its words that are not fillers."""
+    """The number of the form's words that are not fillers."""
     alone: bool
-    """Whether it must be a whole clause."""
+    """Whether the form must be a whole clause."""
     negative: bool
-    """Whether it contains a negation itself."""
+    """Whether the form itself contains a negation."""
     question: bool
-    """Whether it contains a question word itself."""
+    """Whether the form itself contains a question word."""
     anyhow: bool
-    """Whether it is found even if it is negated."""
+    """Whether the form is found even if it is negated."""
 
 
 class Find(NamedTuple):
@@ -53,13 +53,13 @@ class Find(NamedTuple):
 
     entry: Entry
     start: int
-    """The index of its first word."""
+    """The index of the form's first word."""
     end: int
-    """The index after its last word."""
+    """The index after the form's last word."""
     caught: tuple[tuple[str, Any], ...]
-    """The values that its slots caught, each after the slot's name."""
+    """The values that the slots caught, each after the slot's name."""
     strength: int
-    """The strength of its form, plus those of the list entries that its slots caught."""
+    """The strength of the form, plus those of the list entries that the slots caught."""
 
 
 class ReadSentence:
@@ -86,7 +86,7 @@ class ReadSentence:
         return self.text[self.spans[start][0] : self.spans[end - 1][1]] if end > start else ""
 
     def is_whole(self, find: Find) -> bool:
-        """Return whether the clauses of a find contain nothing else but fillers and forms of the same name."""
+        """Return whether the clauses of a find contain, besides it, only fillers and forms of the same name."""
         words = range(len(self.words))
         inside = set(self.clauses[find.start : find.end])
         rest = [i for i in words if self.clauses[i] in inside and not self.filler[i] and not find.start <= i < find.end]
@@ -96,7 +96,7 @@ class ReadSentence:
         return all(any(other.start <= i < other.end for other in same) for i in rest)
 
     def negation(self, find: Find) -> int | None:
-        """Return the index of the word that negates a find; None if none does."""
+        """Return the index of the word that negates a find; None if no word does."""
         if find.entry.negative or find.entry.anyhow:
             return None
         before = self._negating("negations", range(find.start - 1, -1, -1), self.clauses[find.start], NEAR)
@@ -156,9 +156,9 @@ def _written_out(
 class Finder:
     """The phrases of a behaviour in one trie.
 
-    `tables` are phrases by language for each name, `rows` the same for each row of the answers of a name, `lists` the
-    phrases of the entries of each list with the entry. Names in `anyhow` are found even if they are negated. `others`
-    are phrases that are not searched for, but whose words do not count as a person's name either.
+    `tables` are phrases by language for each name, `rows` are such phrases for each row of a name's answers, and
+    `lists` are those of each entry of a list, with the entry. Names in `anyhow` are found even if they are negated.
+    `others` are phrases that are not searched for, but whose words do not count as a person's name either.
     """
 
     def __init__(
@@ -174,7 +174,7 @@ class Finder:
         self._tables = (*tables.values(), *(table for several in (rows or {}).values() for table in several), *others)
         self.root: _Node = {}
         self.leading: list[tuple[frozenset[str], _Node]] = []
-        """The forms that begin with a slot, each with words that it needs."""
+        """The forms that begin with a slot, each with the words that it needs."""
         self.slots_only: list[tuple[Form, Entry]] = []
         self.lists = {name: self._list(entries) for name, entries in (lists or {}).items()}
         for name, table in tables.items():

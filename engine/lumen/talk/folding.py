@@ -131,7 +131,7 @@ def placed_words(text: str) -> Iterator[tuple[str, int, int]]:
 
 
 def _ends(text: str, last: int, start: int) -> bool:
-    """Return whether a clause ends between two words; the full stop within "3.5" ends none."""
+    """Return whether a clause ends between two words; the full stop within "3.5" ends no clause."""
     if start - last == 1:
         return text[last] > "\u0500" and _ENDS.match(text, last) is not None
     return _ENDS.search(text, last, start) is not None

@@ -43,7 +43,7 @@ class RowOrder(NamedTuple):
 
 
 def said_in(event: Any) -> str:
-    """Return the text of an event, which is given as expressions see it; empty if it has none."""
+    """Return the text of an event, which is given as expressions see it; empty if the event has no text."""
     try:  # this runs for each row, and is faster than checking the types first
         text = event["data"]["result"]
     except (KeyError, TypeError):
@@ -110,7 +110,10 @@ class Hearing:
         return found
 
     def nearest(self, number: int, text: str, context: Mapping[str, Any]) -> tuple[Find, Dropped] | None:
-        """Return the best find for that row, even one that does not count, and why not; None if nothing was found."""
+        """Return the best find for that row, and why it does not count (empty if it does).
+
+        A find that counts is preferred to one that does not. The result is None if nothing was found.
+        """
         reading, row, asked = self.read(text), self.rows[number], asked_in(self.blocks[number])
         find = self.best(reading, row, asked, context) or self.best(reading, row, asked, context, counting=False)
         if find is None:
@@ -233,14 +236,14 @@ def _forms(machine: MachineDefinition, row: Hears) -> Iterator[Form]:
 
 
 def by_language(value: Any) -> dict[str, tuple[str, ...]]:
-    """Return phrases by language, given as a text, a list of texts, or a map with these for each language."""
+    """Return phrases by language, given as a text, a list of texts, or a map of texts or lists by language."""
     table = value if isinstance(value, Mapping) else {"": value}
     rows = {key: (row,) if isinstance(row, str) else tuple(row or ()) for key, row in table.items()}
     return {key: tuple(text for text in row if isinstance(text, str)) for key, row in rows.items()}
 
 
 def phrases_in(entry: Mapping[str, Any]) -> dict[str, tuple[str, ...]]:
-    """Return the `phrases` of a list's entry by language; a slot with the list's name catches the entry by them."""
+    """Return the `phrases` of a list's entry by language, by which a slot with the list's name catches the entry."""
     value = entry.get("phrases")
     return by_language(value) if isinstance(value, str | list | tuple | Mapping) else {}
 

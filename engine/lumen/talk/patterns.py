@@ -13,7 +13,7 @@ from typing import NamedTuple
 from lumen.talk.folding import folded
 
 MAX_FORMS = 200
-"""The greatest number of forms of a pattern; one with more is not valid."""
+"""The greatest number of forms of a pattern; a pattern with more forms is not valid."""
 
 _SLOT = re.compile(r"\{([A-Za-z_]\w*\??)(?::([A-Za-z_]\w*))?\}")
 _SIGNS = re.compile(r"[()\[\]{}|]")
@@ -33,7 +33,7 @@ class Slot(NamedTuple):
 
 
 class Form(NamedTuple):
-    """A form of a phrase: folded words and slots in order; `whole` if it must be a whole clause."""
+    """A form of a phrase: folded words and slots in order; `whole` is true if the form must be a whole clause."""
 
     parts: tuple[str | Slot, ...]
     whole: bool
@@ -44,7 +44,7 @@ class Form(NamedTuple):
 
     @property
     def plain(self) -> bool:
-        """Whether it has no slots."""
+        """Whether the form has no slots."""
         return all(isinstance(part, str) for part in self.parts)
 
 
@@ -58,7 +58,7 @@ class PatternError(ValueError):
 
 @lru_cache(maxsize=8192)
 def forms(phrase: str) -> tuple[Form, ...]:
-    """Return the forms of a phrase, in the order written; that of its plain words if it is not a valid pattern."""
+    """Return the forms of a phrase, in the order written; the form of its plain words if it is not a valid pattern."""
     try:
         return read_pattern(phrase)
     except PatternError:

@@ -25,7 +25,7 @@ _Lists = Mapping[str, Sequence[Mapping[str, Any]]]
 
 
 class SampleSentence(NamedTuple):
-    """A sentence in which a phrase is found, and what its slots catch."""
+    """A sentence in which a phrase is found, and the values that the slots catch."""
 
     text: str
     caught: Mapping[str, Any]

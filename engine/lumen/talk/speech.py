@@ -44,7 +44,7 @@ class WordList:
         return not self.by_first.keys().isdisjoint(words) and any(self.marks(words))
 
     def length(self, words: Sequence[str], start: int) -> int:
-        """Return the number of words of the longest entry that begins at the index `start`; 0 if none does."""
+        """Return the number of words of the longest entry that begins at the index `start`; 0 if no entry does."""
         for entry in self.by_first.get(words[start], ()):
             length = len(entry)
             if length == 1 or tuple(words[start : start + length]) == entry:
@@ -52,7 +52,7 @@ class WordList:
         return 0
 
     def marks(self, words: Sequence[str]) -> list[int]:
-        """Return for each word the length of the entry that it is part of, 0 if it is part of none."""
+        """Return for each word the length of the entry to which it belongs, 0 for words outside of entries."""
         found = [0] * len(words)
         if self.by_first.keys().isdisjoint(words):
             return found

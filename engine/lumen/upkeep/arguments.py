@@ -9,7 +9,7 @@ from lumen.errors import UsageError
 
 
 def need(value: Any, kind: type | tuple[type, ...], what: str, meant: str) -> None:
-    """Raise UsageError if a value is not of a type in `kind`; a bool counts as one only if `kind` is bool.
+    """Raise UsageError if a value is not of a type in `kind`; a bool is accepted only if `kind` is bool.
 
     `meant` describes the type in the message.
     """

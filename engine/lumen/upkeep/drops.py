@@ -1,4 +1,4 @@
-"""Count dropped items by key, and write lines about them: one for the first, then counts instead of a line each."""
+"""Count dropped items by key, and write lines about them: one for the first drop, then counts of further drops."""
 
 import logging
 import re
@@ -44,7 +44,7 @@ class Drops:
             return dict(self._counts)
 
     def add(self, key: str, why: str, count: int = 1) -> None:
-        """Count drops under a key; `why` is the reason in the line about them."""
+        """Count drops under a key; `why` is the reason in the line about these drops."""
         with self._changing:
             key = key if key in self._counts or len(self._counts) < MAX_KEYS else OTHERS
             first = key not in self._told

@@ -31,9 +31,9 @@ def search_rarely() -> None:
 class GcScheduler:
     """A scheduler of full collections. Call it after each tick, when the most time is left until the next.
 
-    It stops Python from beginning full collections itself, at any moment and on any thread. Objects that exist when it
-    is made are never searched again: with everything that was imported and loaded, a collection would last a tick or
-    more; with later objects alone it lasts some milliseconds.
+    It stops Python from beginning full collections itself, at any moment and on any thread. Objects that exist when the
+    scheduler is made are never searched again: with everything that was imported and loaded, a collection would last a
+    tick or more; with later objects alone it lasts some milliseconds.
     """
 
     def __init__(self) -> None:
@@ -42,7 +42,7 @@ class GcScheduler:
         gc.set_threshold(*self._usual[:2], NEVER)
 
     def __call__(self, _: float = 0.0) -> None:
-        """Run a full collection if Python would have begun one since the last."""
+        """Run a full collection if Python would have begun one since the last full collection."""
         if gc.get_count()[2] > self._usual[2]:
             gc.collect()
 

@@ -117,12 +117,15 @@ class JudgeProcess:
         return answer
 
     def send(self, message: Any) -> None:
-        """Send a message that has no answer; if the process has ended, it is lost, and the next request fails."""
+        """Send a message that has no answer.
+
+        If the process has ended, the message is lost, and the next request fails.
+        """
         if child := self._child:
             self._send(child, message)
 
     def end(self) -> None:
-        """End the process at once, if there is one."""
+        """End the process at once, if it was started."""
         if child := self._child:
             self._end(child)
 
@@ -176,7 +179,7 @@ class AnswerPipe:
     def answer(self, judge: Callable[[], Any], seconds: float = 0.0) -> None:
         """Send the return value or the exception of `judge`; a MemoryError is raised instead.
 
-        The system ends the process if that lasts longer than `seconds` [s]; 0 sets no limit.
+        The system ends the process if `judge` runs longer than `seconds` [s]; 0 sets no limit.
         """
         limit_time(seconds)
         answer: Any
@@ -227,7 +230,7 @@ def _packed(message: Any) -> bytes:
 
 
 def receive(pipe: IO[bytes], most: int | None = None) -> Any:
-    """Return the next message. Raises EOFError at the end, and _SizeError if it has more than `most` bytes."""
+    """Return the next message. Raises EOFError at the end, and _SizeError if the message has more than `most` bytes."""
     head = pipe.read(_LENGTH.size)
     if len(head) < _LENGTH.size:
         raise EOFError

@@ -25,7 +25,7 @@ def private_folder(folder: Path) -> None:
 
 
 def write_private(path: Path, content: bytes, *, durable: bool = False) -> None:
-    """Write a file that only its owner can read, completely or not at all. Raises OSError if that fails.
+    """Write a file that only its owner can read, completely or not at all. Raises OSError on failure.
 
     A crash of the process loses neither the old nor the new file. After a power cut the old one may come back, unless
     `durable` forces the content to the disk.

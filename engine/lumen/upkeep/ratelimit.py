@@ -1,4 +1,4 @@
-"""Limit how often something happens: messages per second by key, attempts after failures, and lines of a log."""
+"""Limit the frequency of events: messages per second by key, attempts after failures, and lines of a log."""
 
 import logging
 import time
@@ -12,9 +12,9 @@ MAX_DOUBLINGS = 60
 
 
 def pause_after(failures: int, first: float, longest: float = inf) -> float:
-    """Return the pause after a number of failures in a row [s]: 0 after none, `first` after one, doubled by each more.
+    """Return the pause after a number of failures in a row [s].
 
-    It is never longer than `longest`.
+    It is 0 after none, `first` after one, and doubles with each further failure, up to `longest`.
     """
     return min(first * 2.0 ** min(failures - 1, MAX_DOUBLINGS), longest) if failures > 0 else 0.0
 
@@ -51,9 +51,10 @@ class TokenBucket:
     since: float
 
     def wait(self, now: float, rate: float, most: float) -> float:
-        """Return the time from `now` until a token is available [s]; 0 if one is, which the caller may then remove.
+        """Return the time from `now` until a token is available [s]; 0 if one is available.
 
-        Tokens since the last call are added first: `rate` per second, up to `most`.
+        Tokens since the last call are added first: `rate` per second, up to `most`. The caller may remove an available
+        token.
         """
         self.tokens, self.since = min(most, self.tokens + rate * (now - self.since)), now
         return 0.0 if self.tokens >= 1.0 else (1.0 - self.tokens) / rate
@@ -70,7 +71,7 @@ class RateLimiter:
     def apart(self, key: str, sender: str) -> str:
         """Return the key for `wait` under which a sender's messages are counted.
 
-        It is the sender's own, unless MAX_SENDERS others have sent within BURST [s].
+        The key is the sender's own, unless MAX_SENDERS others have sent within BURST [s].
         """
         if len(self._senders) > MAX_KEYS:
             self._senders.clear()

@@ -53,7 +53,7 @@ def _write(draft: Path, content: bytes) -> None:
 
 
 def _inherit(draft: Path, target: Path, there: os.stat_result) -> None:
-    """Give the draft the owner, the permissions and the access lists of the file. Raises OSError if that fails."""
+    """Give the draft the owner, the permissions and the access lists of the file. Raises OSError on failure."""
     made = os.stat(draft)
     if (made.st_uid, made.st_gid) != (there.st_uid, there.st_gid):
         os.chown(draft, there.st_uid, there.st_gid)

@@ -1,4 +1,4 @@
-"""Threads that an exhibition can't do without: they are restarted after a fault, and reported once given up."""
+"""Threads that are essential for an exhibition: they are restarted after a fault, and reported once given up."""
 
 import logging
 import threading
@@ -35,7 +35,7 @@ class WatchedThread:
 
     def __init__(self, name: str, work: Callable[[], None], *, vital: bool = False) -> None:
         self.name, self.vital, self.lost = name, vital, ""
-        """`vital` is true if the robot must rest once the thread is given up, because no person could then stop it.
+        """`vital` is true if the robot must rest once the thread is given up, because no person could stop it then.
 
         `lost` is the reason why the thread was given up; empty if it was not.
         """

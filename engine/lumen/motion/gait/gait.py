@@ -156,7 +156,10 @@ class Gait:
         return GaitTick(self._stand(feet).angles, lifted, stride)
 
     def stop(self) -> None:
-        """End the walk as soon as balance permits: a foot that just took off returns, a later one lands first."""
+        """End the walk as soon as balance permits.
+
+        A foot that just took off returns; a foot that is farther on its way lands first.
+        """
         phase, stopping = self._phase, self._stopping
         self._stopping = True
         if stopping or phase.swing is None:
