@@ -83,7 +83,7 @@ def _reported(feature: Feature, where: str, *arguments: Any) -> tuple[str, list[
 
 
 def _controller(project: Project, wanted: str | None) -> str:
-    """Return the name of the controller to write: the wanted one, else the only one. Raises UsageError without one."""
+    """Return the name of the wanted controller, else of the only one. Raises UsageError if there is none."""
     name = wanted or (next(iter(project.controllers)) if len(project.controllers) == 1 else "")
     if name not in project.controllers:
         hint = did_you_mean(name, project.controllers, "fuzzy/ has")

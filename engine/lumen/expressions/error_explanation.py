@@ -68,7 +68,7 @@ def _sign(node: ExpressionNode) -> str:
 
 
 def _failing(traceback: TracebackType | None, tree: ExpressionNode) -> ExpressionNode:
-    """Return the node whose instruction raised: the line number in the innermost frame of an expression."""
+    """Return the node whose instruction raised: its number is the line in the innermost frame of an expression."""
     number = 1
     while traceback is not None:
         if traceback.tb_frame.f_code.co_filename == EXPRESSION_FILE:

@@ -115,7 +115,7 @@ def result_schema(row: VerbRow) -> dict[str, Any]:
 
 
 def usual_result(command: BodyCommand | None) -> dict[str, Any] | None:
-    """Return the data of `done.command.ID` of a command that ends with its default result; None if it has none."""
+    """Return the data of `done.command.ID` of a command that ends with its default result; None without one."""
     row = added_row(command) if isinstance(command, Do) else None
     result = default_result(row) if row else None
     return {RESULT: result} if result else None

@@ -13,7 +13,7 @@ _ENDING = "/?#[]"
 
 
 def credentials_of(url: str) -> str:
-    """Return the part of an address that may be a name and password; empty if it has none."""
+    """Return the part of an address that may be a name and password; empty if the address has none."""
     return _FILE.sub("", url.partition("://")[2] or url).rpartition("@")[0]
 
 

@@ -20,7 +20,7 @@ SaysGestures = Literal["none", ""]
 
 @dataclass(frozen=True, slots=True)
 class Say:
-    """Speak a text; `language` is one of the project's, or empty if it has none."""
+    """Speak a text; `language` is one of the project's, or empty if the project has none."""
 
     text: str
     language: str = ""

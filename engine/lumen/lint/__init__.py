@@ -39,8 +39,8 @@ def check_files(
     """Return the project that these files make, None if they have errors, and all findings in them.
 
     If the project has several robots, the files can choose one of them (`as_robot`); without a choice the findings are
-    those of all robots, and the project is that of the first. `between` is called before each rule, so that a caller
-    can stop the check by raising an exception. `looks` records which other paths on disk were examined.
+    those of all robots, and the project is that of the first robot. `between` is called before each rule, so that a
+    caller can stop the check by raising an exception. `looks` records which other paths on disk were examined.
     """
     looks = looks or Looks()
     found, diagnostics = _checked(root, files, between, looks)

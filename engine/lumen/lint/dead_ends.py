@@ -254,7 +254,7 @@ class _Ways:
             self.report(NO_WAY_BACK, state.where, message, hint, key=True, related=self.from_where(path))
 
     def waiting(self, state: State) -> None:
-        """Report a state that is left only if a visitor does something."""
+        """Report a state that is left only if a visitor acts."""
         steps = nested((*state.entry, *state.do))
         raised = {a.event for step in steps if isinstance(a := step.action, Raise | Send) and not _goes_away(a)}
         names: set[str] = set()

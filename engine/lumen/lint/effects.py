@@ -78,7 +78,7 @@ def _ways(machine: MachineDefinition, report: DocumentReport) -> None:
 
 
 def _leaves_at_once(state: State) -> Transition | None:
-    """Return the `always` without a guard that leaves a state as soon as it is entered; None if it has none."""
+    """Return the `always` without a guard that leaves a state as soon as it is entered; None if the state has none."""
     if state.kind is not StateKind.ATOMIC or state.parent is None:
         return None
     return next(

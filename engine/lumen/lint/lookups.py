@@ -49,7 +49,7 @@ class References:
         self._missing = draft.missing
 
     def look_up(self, report: DocumentReport, path: NodePath, kind: str, name: str, *, key: bool = False) -> bool:
-        """Return whether there is a file of that kind and name; if not, report that at `path`."""
+        """Return whether there is a file of that kind and name; if not, report the name at `path`."""
         folder, what, code = _FOLDERS[kind]
         names = self._names.get(folder, frozenset())
         if name in names:

@@ -1,6 +1,6 @@
 """The MJCF of the robot and of the hall: whether it is valid XML, and whether the files and joints that it names exist.
 
-MuJoCo's own errors are reported when it simulates the model; it is not imported here.
+MuJoCo's own errors are reported when the model is simulated; MuJoCo is not imported here.
 """
 
 import os
@@ -33,7 +33,7 @@ def outside(draft: ProjectDraft, folder: str, name: str) -> bool:
 
 
 def missing(draft: ProjectDraft, folder: str, name: str) -> str:
-    """Return the hint for a file that is missing in models/; empty if it is there, or if that is unknown."""
+    """Return the hint for a file that is missing in models/; empty if the file is there, or if this is unknown."""
     if draft.root is None:
         return ""
     models = draft.root / _MODELS
@@ -77,7 +77,7 @@ def check(draft: ProjectDraft) -> None:
 class _ModelReader:
     """Reads a model and the models that it includes, each once, and reports their faults.
 
-    If the project is not in a folder, missing files are not reported, because that is unknown.
+    If the project is not in a folder, missing files are not reported, because it is unknown which files exist.
     """
 
     draft: ProjectDraft

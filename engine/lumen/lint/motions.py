@@ -59,7 +59,7 @@ def _by_key(fast: Iterable[Excess]) -> list[list[Excess]]:
 
 
 def _keyframe(where: NodePath) -> NodePath:
-    """Return the path of the keyframe that contains a key; the path itself if it is not inside one."""
+    """Return the path of the keyframe that contains a key; the path itself if the key is in no keyframe."""
     return where[: max((n for n, step in enumerate(where) if step == "keyframes"), default=len(where)) + 2]
 
 

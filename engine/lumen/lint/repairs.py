@@ -36,8 +36,8 @@ def repaired(
 ) -> tuple[ProjectFiles, list[Repair]]:
     """Return the files with every fix of a wanted finding that improves them, and the repairs that were made.
 
-    An improvement removes the finding and adds none. All fixes are tried together; if that fails, each half of them is
-    tried separately, and so on.
+    An improvement removes the finding and adds none. All fixes are tried together; if they fail together, each half of
+    them is tried separately, and so on.
     """
     found, done = check(files), list[Repair]()
     for _ in range(MAX_REPAIR_ROUNDS):

@@ -66,7 +66,7 @@ def _fault(key: str) -> tuple[str, str]:
 
 
 def _taken(report: DocumentReport, route: Route, settings: Settings) -> bool:
-    """Return whether Lumen itself uses that key for something else; report it if so."""
+    """Return whether Lumen itself uses that key for something else; if it does, report the route."""
     key = route.key_for(settings.robot)
     owner = _owners(settings).get(key, route.name)
     message, cause = f"`{key}` is the key of Lumen's own route `{owner}`", f"name {owner}"

@@ -194,7 +194,7 @@ class _Speech:
             self.texts(report, path, {language: text for language, text in texts.items() if language not in parts})
 
     def phrases(self, tables: WordTables) -> None:
-        """Report names of phrases that lack one of the project's languages; those lacking the same share a cause."""
+        """Report names of phrases that lack a language of the project; names that lack the same one share a cause."""
         for name, phrases in tables.phrases.items():
             if name in WORD_LISTS:
                 continue

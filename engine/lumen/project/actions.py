@@ -80,13 +80,13 @@ class Actions:
         return self._verb(verb, body, (*where, verb))
 
     def duration(self, text: Any, where: NodePath, *, key: bool = False) -> float | None:
-        """Return the duration [s] in a text such as `20s`; if it is not a duration, report that and return None."""
+        """Return the duration [s] in a text such as `20s`; if it can't be read, report the fault and return None."""
         if (length := seconds(text)) is None:
             self.report(BAD_DURATION, where, f"`{text}` is not a duration", hint=duration_hint(text), key=key)
         return length
 
     def delay(self, text: Any, where: NodePath, *, key: bool = False) -> float | Template | None:
-        """Return a delay [s], or the template that computes it; if the text is neither, report that and return None."""
+        """Return a delay [s], or the template that computes it; for any other text, report that and return None."""
         if isinstance(text, str) and "{{" in text:
             return self.expressions.template(text, where)
         return self.duration(text, where, key=key)
@@ -100,7 +100,7 @@ class Actions:
         return self._do(verb, added, data, where) if added else None
 
     def _do(self, verb: str, row: VerbRow, data: Any, where: NodePath) -> Do | None:
-        """Return the command of an added verb; if a duration or a template is faulty, report that and return None."""
+        """Return the command of an added verb; if a duration or template is faulty, report that and return None."""
         sound = True
 
         def read(text: str, below: NodePath) -> str:
@@ -119,14 +119,14 @@ class Actions:
         return Do(verb, arguments, row=self.verbs.rows.get(verb)) if sound else None
 
     def _command(self, row: Verb[Any], data: Any, where: NodePath) -> VerbCommand | None:
-        """Return the command of this row; if a value in it can't be read, report that and return None."""
+        """Return the command of this row; if a value in it can't be read, report the fault and return None."""
         values = {}
         for field, below, value in row.arguments(data):
             values[field.name] = self._value(field.quantity, value, (*where, *below))
         return None if None in values.values() else row.command(**values)
 
     def _value(self, quantity: Quantity, value: Any, where: NodePath) -> Any:
-        """Return the value in the command's units; if it can't be read, report that and return None."""
+        """Return the value in the command's units; if it can't be read, report the fault and return None."""
         if isinstance(value, int | float) and not finite(value, self.report, where):
             return None
         match quantity:

@@ -243,7 +243,7 @@ class _Builder:
         return {n: self.angle_of(n, spec[n], (*path, n)) for n in self.joints if n in spec}
 
     def angle_of(self, name: str, value: float, path: NodePath) -> float:
-        """Return the angle [rad], clipped to the joint's limits; report it if it exceeds them noticeably."""
+        """Return the angle [rad], clipped to the joint's limits; report an angle that exceeds them noticeably."""
         joint, unit = self.joints[name], self.unit(name)
         angle = value * unit
         if not (isfinite(angle) and joint.minimum - POSTURE_TOLERANCE <= angle <= joint.maximum + POSTURE_TOLERANCE):

@@ -18,7 +18,7 @@ B = TypeVar("B", covariant=True)
 
 
 class Build(Protocol[B]):
-    """Builds a value from a document's checked data, and reports faults in the data; returns None if that fails."""
+    """Builds a value from a document's checked data and reports faults; returns None if no value can be built."""
 
     def __call__(self, data: Any, report: DocumentReport, *, name: str) -> B | None: ...
 
@@ -56,7 +56,7 @@ def _read(
 
 
 def unless_too_deep(report: DocumentReport, build: Callable[[], T | None]) -> T | None:
-    """Return the result of `build`; if the file is nested too deeply for Python, report that and return None."""
+    """Return the result of `build`; if the file is nested too deeply for Python, report the fault and return None."""
     try:
         return build()
     except RecursionError:

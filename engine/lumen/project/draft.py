@@ -34,7 +34,7 @@ class ProjectDraft:
 
     files: Mapping[str, bytes]
     lent: Mapping[str, bytes] = field(default_factory=dict)
-    """Files that come with Lumen, used because the project has none of that name."""
+    """Files that come with Lumen, used because the project has no file of that name."""
     settings: Settings | None = None
     """The content of lumen.yaml; None if it can't be read at all."""
     bodies: dict[str, Body] = field(default_factory=dict)

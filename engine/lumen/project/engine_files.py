@@ -79,8 +79,8 @@ def surroundings(root: Path) -> str:
 def listed(folder: Path) -> Iterator[tuple[str, str, int]]:
     """Yield each file below a folder: its relative path, a text about its state, and when its entry changed [ns].
 
-    The text holds the file's size, when it was written, and the target if it is a link, so an exact copy has the same.
-    `__pycache__` and folders that can't be listed are skipped. If `folder` is a file, its path is `.`.
+    The text holds the file's size, when it was written, and the target if it is a link, so an exact copy has the same
+    text. `__pycache__` and folders that can't be listed are skipped. If `folder` is a file, its path is `.`.
     """
     if folder.is_file():
         status = folder.stat()

@@ -88,7 +88,7 @@ class Expressions:
         return None if meant is None else Template(meant, where, text if meant != text else "")
 
     def value(self, data: Any, where: NodePath) -> ComputedValue:
-        """Return data with each text read as an expression, even in lists and maps; unreadable ones become None.
+        """Return data with each text read as an expression, even in lists and maps; unreadable texts become None.
 
         A number that is not finite is reported and becomes None: values go into messages and snapshots, and JSON has no
         infinity or NaN.
@@ -107,7 +107,7 @@ class Expressions:
         return None
 
     def key(self, key: str, where: NodePath) -> bool:
-        """Return True if the context declares this key; report it if not."""
+        """Return True if the context declares this key; otherwise, report the key."""
         if key in self.keys:
             return True
         hint = did_you_mean(key, self.keys, "`context` has")
@@ -146,7 +146,7 @@ class Expressions:
         return finding._replace(hint=hint) if home else finding
 
     def _calls_what_it_may(self, source: str, where: NodePath) -> bool:
-        """Return True if `caught`, which is reserved for the engine, is not called; report it if it is."""
+        """Return True if `caught`, which is reserved for the engine, is not called; otherwise, report the call."""
         if CAUGHT not in source or not re.search(rf"\b{CAUGHT}\s*\(", source):
             return True
         self.report(
@@ -155,7 +155,7 @@ class Expressions:
         return False
 
     def _draws_where_it_may(self, source: str, where: NodePath) -> bool:
-        """Return True if no random value is drawn outside `assign`; report it if one is."""
+        """Return True if no random value is drawn outside `assign`; otherwise, report the call."""
         if "assign" in where or not any(name in source for name in drawing_functions()):
             return True
         drawing = next((name for name in sorted(drawing_functions()) if re.search(rf"\b{name}\s*\(", source)), "")

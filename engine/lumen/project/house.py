@@ -40,7 +40,7 @@ def build_robots(data: Mapping[str, Any], report: DocumentReport) -> dict[str, R
 
 
 def build_house(data: Mapping[str, Any]) -> str:
-    """Return `house` of lumen.yaml; else the project's name as a word of a routing key; "house" if it has none."""
+    """Return `house` of lumen.yaml; else the project's name as a word of a routing key, or "house" without a name."""
     return data.get("house", "") or re.sub(r"[^a-z0-9]+", "-", data.get("name", "").lower()).strip("-") or "house"
 
 

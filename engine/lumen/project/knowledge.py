@@ -90,7 +90,7 @@ BAD_DATE = Code("bad-date", "knowledge", ERROR, "a date of a passage is not vali
 
 
 def build_passage(data: Any, report: DocumentReport, *, name: str) -> Passage | None:
-    """Return the passage that the data describes; None if it is not a map or lacks its questions or its answer."""
+    """Return the passage that the data describes; None if the data is not a map, or lacks questions or an answer."""
     if not isinstance(data, Mapping) or not {"questions", "answer"} <= data.keys():
         return None
     as_of, until = (_day(data, key, report) for key in ("as-of", "until"))
@@ -102,7 +102,7 @@ def build_passage(data: Any, report: DocumentReport, *, name: str) -> Passage | 
 
 
 def build_questions(data: Any, report: DocumentReport, *, name: str) -> QuestionSet | None:
-    """Return the questions in the data; None if it is not a map."""
+    """Return the questions in the data; None if the data is not a map."""
     if not isinstance(data, Mapping):
         return None
     return read_fields(QuestionSet, data, name=name)

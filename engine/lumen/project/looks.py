@@ -16,7 +16,7 @@ Seen = tuple[str | int, ...]
 
 
 class Looks:
-    """The paths and files of Python packages that a check looked at, each with its state at that time."""
+    """The paths and files of Python packages that a check examined, each with its state at that time."""
 
     def __init__(self) -> None:
         self._began = time.time_ns()

@@ -126,7 +126,7 @@ def _home(kind: str) -> str:
 
 
 def misplaced(data: Any, kind: str, report: DocumentReport) -> bool:
-    """Return True if data belongs in another kind of file and has no key of this kind; report that."""
+    """Return True if data belongs in another kind of file and has no key of this kind; report such data."""
     own = _KINDS[kind]
     if not isinstance(data, Mapping) or own.owns(data):
         return False

@@ -19,7 +19,7 @@ LEAST_NUMBER, GREATEST_NUMBER = 1e-12, 1e12
 
 
 def finite(value: float, report: DocumentReport, path: NodePath) -> bool:
-    """Return True if a number is finite; report it if it is not."""
+    """Return True if a number is finite; otherwise, report the number."""
     try:
         sound = isfinite(value)
     except OverflowError:

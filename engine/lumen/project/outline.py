@@ -59,7 +59,7 @@ class BehaviorOutline:
             self._alias(entry)
 
     def resolve(self, source: OutlinedState, target: str, where: NodePath, written: str = "") -> OutlinedState | None:
-        """Return the state that `target` refers to in a transition of `source`; if none, report that and return None.
+        """Return the state to which `target` refers in a transition of `source`; None if none, which is reported.
 
         `written` is the target as the file has it, if that differs. The name of a state that was removed as broken is
         not reported.

@@ -40,11 +40,11 @@ def misnamed_main_file(folder: Path) -> str:
 
 
 def find_project(path: str | Path | None = None) -> Path:
-    """Return the folder of a project: `path`, or if that is None, one found from the working directory.
+    """Return the folder of a project: `path`, or the nearest project if `path` is None.
 
-    That is the working directory or its nearest parent with a lumen.yaml, else the shipped exhibition. `path` may name
-    the folder or its lumen.yaml. Raises UsageError if there is no such folder, or if one of the searched folders holds
-    a lumen.yaml under another name.
+    The nearest project is the working directory or its nearest parent with a lumen.yaml, else the shipped exhibition.
+    `path` may name the folder or its lumen.yaml. Raises UsageError if there is no such folder, or if one of the
+    searched folders holds a lumen.yaml under another name.
     """
     if path is None:
         here = Path.cwd()

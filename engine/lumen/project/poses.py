@@ -64,7 +64,7 @@ class PoseReader:
         return self._shared(angles | own, own)
 
     def posture(self, name: str, path: NodePath) -> Mapping[str, float] | None:
-        """Return the angles of a posture [rad]; if the robot has no such posture, report that and return None."""
+        """Return the angles of a posture [rad]; if the robot has no such posture, report the fault and return None."""
         if name in self.body.postures:
             return self.body.postures[name]
         hint = did_you_mean(name, self.body.postures, f"{self.body.name} has")
@@ -72,7 +72,7 @@ class PoseReader:
         return None
 
     def number(self, value: float, path: NodePath) -> bool:
-        """Return True if a number is finite; report it if it is not."""
+        """Return True if a number is finite; otherwise, report the number."""
         if not isfinite(value):
             self.report(NOT_A_NUMBER, path, f"`{value}` can't be used here", hint="write a finite number")
         return isfinite(value)
@@ -89,7 +89,7 @@ class PoseReader:
         return found
 
     def _named(self, name: str, path: NodePath) -> JointRole | None:
-        """Return the joint of that name or role; if the body lacks it, report that and return None."""
+        """Return the joint of that name or role; if the body lacks it, report the fault and return None."""
         if "." in name:
             return self.roles.joint(name, path)
         return JointRole(name) if self._known(name, path) else None

@@ -26,7 +26,7 @@ class RoleNames:
         self._lacking: dict[str, NodePath] = {}
 
     def joint(self, name: str, path: NodePath) -> JointRole | None:
-        """Return the joint of a role; None if the body has none, or if there is no such role, which is reported."""
+        """Return the joint of a role; None if the body lacks it, or if there is no such role, which is reported."""
         if name not in JOINT_PATHS:
             hint = did_you_mean(name, JOINT_PATHS, "the roles are")
             self._report(UNKNOWN_ROLE, path, f"there is no role `{name}`", hint=hint, key=True, cause=f"role {name}")
@@ -36,7 +36,7 @@ class RoleNames:
         return role
 
     def some(self, data: Mapping[str, Any], path: NodePath) -> bool:
-        """Return True if the data names joints, by role or by name; report it if it does not."""
+        """Return True if the data names joints, by role or by name; otherwise, report the fault."""
         here = "roles" in data or "joints" in data
         if not (here or self._report.broken((*path, "joints")) or self._report.broken((*path, "roles"))):
             hint = "write `roles: {head.pitch: 5}`, or `joints` for this robot alone"
@@ -62,9 +62,9 @@ _WALKING_SENSORS = ("gyro", "accelerometer")
 class RoleReader:
     """Reads the roles of one file.
 
-    `known` returns True if a joint of this name exists; otherwise, it reports that at the path. `given` are the keys of
-    the file, some of which a role may need; `hands` are the joints with an opening instead of an angle. Only a body
-    that is `modelled` in an MJCF needs to name its wheels.
+    `known` returns True if a joint of this name exists; otherwise, it reports the name at the path. `given` are the
+    keys of the file, some of which a role may need; `hands` are the joints with an opening instead of an angle. Only a
+    body that is `modelled` in an MJCF needs to name its wheels.
     """
 
     def __init__(

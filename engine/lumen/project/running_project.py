@@ -1,4 +1,4 @@
-"""Find the project that a user wants to check, and the one to run, which is never the installed exhibition itself.
+"""Find the project that a user wants to check, and the project to run: never the installed exhibition itself.
 
 If neither the working directory nor a parent has a project, `lumen run` plays a copy of the shipped exhibition in the
 user's state folder. The other commands about a run find the same copy.

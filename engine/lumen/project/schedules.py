@@ -63,7 +63,7 @@ def read_schedule(text: str) -> Schedule:
 
 
 def schedule(text: object, report: DocumentReport, where: NodePath, *, key: bool = False) -> Schedule | None:
-    """Return the schedule at `where` (with `key`, in the key); if it can't be read, report that and return None."""
+    """Return the schedule at `where` (with `key`, in the key); None if it can't be read, which is reported."""
     try:
         found = read_schedule(str(text))
     except MisreadTimeError as error:

@@ -20,8 +20,8 @@ def read_fields(kind: type[T], data: Mapping[str, Any], **given: Any) -> T:
     """Return an object of a dataclass, whose fields are read from the keys of their names.
 
     `given` are fields that the caller has read because their keys have other names or units. A field without a key, or
-    with the value None, gets its default; TypeError is raised if it has none. The annotation of a field decides how its
-    value is read:
+    with the value None, gets its default; TypeError is raised if the field has no default. The annotation of a field
+    decides how its value is read:
     - An `int` is converted from any number, such as a port `8080.0`; a member of an enumeration from its value.
     - A tuple is read from a list, or from one text; a mapping from a map.
     - A dataclass is read from a map; any other value becomes its first field.
@@ -71,7 +71,7 @@ def read_sections(data: Mapping[str, Any], report: DocumentReport) -> dict[str, 
     """Return the settings of each section in the data of lumen.yaml; those that equal their defaults are left out.
 
     Therefore a section that only repeats its defaults makes the same project as one that is absent. If an installed
-    feature can't read its section, that is reported, and the section is left out.
+    feature can't read its section, the fault is reported, and the section is left out.
     """
     found: dict[str, object] = {}
     for feature, (key, row) in rows("sections"):
@@ -95,7 +95,7 @@ def is_section(key: str) -> bool:
 def with_sections(schema: dict[str, Any]) -> dict[str, Any]:
     """Add the sections of features that the JSON Schema of lumen.yaml lacks, and return the same schema.
 
-    A section whose own schema can't be used accepts everything, until it is read and that is reported.
+    A section whose own schema can't be used accepts everything, until the section is read and the fault is reported.
     """
     for feature, (key, row) in rows("sections"):
         if row.schema:

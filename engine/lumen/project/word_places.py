@@ -23,9 +23,9 @@ def report_word(
 def place_of(document: Document, path: NodePath, text: str, offset: int, length: int) -> Place:
     """Return the place of `text[offset : offset + length]`, where `text` is the scalar at `path`.
 
-    Its visible characters are found one after the other, through quotes, folded lines and blocks. If that fails, as at
-    an escape, or if the document has no source, the place is that of the whole text. If no visible character is left at
-    `offset`, the place is that of the character after the text.
+    Its visible characters are found one after the other, through quotes, folded lines and blocks. If a character is not
+    found, as at an escape, or if the document has no source, the place is that of the whole text. If no visible
+    character is left at `offset`, the place is that of the character after the text.
     """
     whole = document.place(path)
     columns = _columns(document, whole, text)

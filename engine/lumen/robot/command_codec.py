@@ -46,7 +46,7 @@ def decode_command(body: Any, project: Project, pose: PoseSource = dict) -> Robo
 
 
 def method_of(body: Any) -> str:
-    """Return the method of a body in lower case; empty if it has none."""
+    """Return the method of a body in lower case; empty if the body has no method."""
     method = lowered(body, "a command").get("method") if isinstance(body, Mapping) else None
     return shown(method.strip().lower()) if isinstance(method, str) else ""
 

@@ -241,7 +241,7 @@ class CommandReceiver:
             return self._taken(self._received)
 
     def _full(self, *, own: bool) -> str:
-        """Return why no further command, of the behaviour (`own`) or of other modules, may wait; empty if one may."""
+        """Return why no further command, of the behaviour (`own`) or of other modules, may wait; empty if it may."""
         if own:
             waiting, most = self._own_waiting, MAX_WAITING_OWN
         else:

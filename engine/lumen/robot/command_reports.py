@@ -33,7 +33,7 @@ class CommandRecord:
     reason: str = ""
     """Why the command failed, or which joint missed its goal; else empty."""
     result: Mapping[str, Any] | None = None
-    """The result of a verb of a feature; None if it has none."""
+    """The result of a verb of a feature; None if the verb has no result."""
     parts: frozenset[str] = frozenset()
     """The parts of the body that the command owns."""
     takes: float = 0.0
@@ -83,7 +83,7 @@ class CommandReports:
         return sum(record.takes for record in self._running.values() if not parts.isdisjoint(record.parts))
 
     def find(self, id: str, sender: str) -> CommandRecord | None:
-        """Return the record of the command with that id from this sender, or from an unknown one; None without one."""
+        """Return the record of the command with that id from this or an unknown sender; None without such a record."""
         return self._known.get((sender, id)) or self._known.get((None, id))
 
     def asked(self, id: str, sender: str) -> CommandRecord | None:

@@ -89,7 +89,7 @@ class _Task:
 
     @property
     def turn(self) -> tuple[bool, bool, int]:
-        """The sort key of waiting tasks: the least begins first."""
+        """The sort key of waiting tasks: the task with the least key begins first."""
         rank = row_of(self.command).rank
         return rank > 0, self.id.startswith(FOREIGN) and self.id[1:].isdecimal(), rank
 
@@ -146,7 +146,7 @@ class Executor:
         self._tasks.sort(key=lambda t: t.turn)
 
     def cancel(self, id: str) -> None:
-        """End a command early; one that is unknown or over is left alone."""
+        """End a command early; do nothing if the id is unknown or the command is over."""
         self._cancel([t for t in self._tasks if t.id == id])
 
     def fail(self, reason: str, *, fallen: bool = False) -> None:

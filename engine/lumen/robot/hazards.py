@@ -1,9 +1,9 @@
-"""The reasons why any robot must not walk: something near ahead, or a hand on a button."""
+"""The reasons why any robot must not walk: an obstacle near ahead, or a hand on a button."""
 
 from collections.abc import Iterable, Mapping
 
 OBSTACLE_DISTANCE = 0.4
-"""A robot does not walk if something is nearer than this [m]."""
+"""A robot does not walk if an obstacle is nearer than this [m]."""
 
 STOP_BUTTONS = {
     "RightBumper": "the right bumper",

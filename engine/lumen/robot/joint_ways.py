@@ -31,7 +31,7 @@ def way_duration(way: Mapping[str, float], body: Body, least: float) -> float:
 
 
 def home_angles(motion: MotionDefinition, body: Body, owned: Collection[str]) -> dict[str, float]:
-    """Return the angles [rad] of the motion's start posture, for joints in the parts `owned`; empty if it has none."""
+    """Return the angles [rad] of the motion's start posture, for joints in the parts `owned`; empty without one."""
     part = part_of(body)
     return {name: angle for name, angle in body.postures.get(motion.start, {}).items() if part.get(name) in owned}
 

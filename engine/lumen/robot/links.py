@@ -59,7 +59,7 @@ class BodyLinks(Protocol):
 def links_of(body: Body, models: Path) -> BodyLinks:
     """Return the links of a body whose model is in the folder `models`.
 
-    Raises LumenError if no feature computes them, if what it needs is not installed, or if the model can't be built.
+    Raises LumenError if no feature computes them, if a needed package is not installed, or if the model can't be built.
     """
     for feature, where in rows("links"):
         links: BodyLinks = called(feature, where, body, models)

@@ -145,7 +145,7 @@ class RecordingRobot(ExecutingRobot):
 
     @property
     def idle(self) -> bool:
-        """True if no command is under way, no event is unread, and no visitor is in front of it."""
+        """True if no command is under way, no event is unread, and no visitor is in front of the robot."""
         return self._executor.idle and not (self._noticed or self._visitor)
 
     def advance(self, dt: float) -> None:

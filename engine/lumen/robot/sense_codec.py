@@ -38,7 +38,7 @@ def encode_reading(sense: str, reading: OtherReading) -> dict[str, Any]:
 
 
 def decode_reading(sense: str, body: Any, names: Sequence[str]) -> OtherReading | None:
-    """Return the reading in a body of that sense; None if the body has none, or is of a robot with other joints.
+    """Return the reading in a body of that sense; None if the body lacks it, or is of a robot with other joints.
 
     For images it is always None, because they are for other modules. Raises LumenError with the name of the installed
     package if its code is faulty.

@@ -107,7 +107,7 @@ class SensePublisher:
                 self._thread = self._started()
 
     def close(self, timeout: float) -> bool:
-        """Publish the waiting reading and end the thread; return True if that was done within `timeout` [s]."""
+        """Publish the waiting reading and end the thread; return True if both were done within `timeout` [s]."""
         with self._changed:
             self._ending = True
             self._changed.notify()

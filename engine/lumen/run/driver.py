@@ -34,7 +34,7 @@ def is_driver(name: str, root: Path) -> bool:
 def make_robot(driver: str, project: Project) -> Robot:
     """Return a new robot that a driver's class makes for the project.
 
-    Raises UsageError if there is no such class, RobotError if it fails or lacks a method of `lumen.ports.Robot`.
+    Raises UsageError if there is no such class, RobotError if the class fails or lacks a method of `lumen.ports.Robot`.
     """
     kind = robot_class(driver, Path(project.root))
     try:

@@ -125,7 +125,7 @@ class Rescuer(Protocol):
     def rescue(self, error: Exception) -> Sequence[Command] | None:
         """Switch to another bundle; return the commands of the switch.
 
-        Return None if that is impossible. If no rescuer can switch, the fault ends the run.
+        Return None if no switch is possible. If no rescuer can switch, the fault ends the run.
         """
         ...
 

@@ -165,7 +165,8 @@ class Node:
     def claims(self) -> bool:
         """Return whether other processes can still object to this process's roles.
 
-        Raises UsageError if one objects, BusUnreachableError if none could because the broker accepts no messages.
+        Raises UsageError if a process objects, BusUnreachableError if none could, because the broker accepts no
+        messages.
         """
         if self.presence is None or self.presence.settled:
             return False

@@ -40,7 +40,7 @@ class FaceDetector:
         return bool(self._developing) or self._hall.face() is not None
 
     def use(self, project: Project) -> None:
-        """Switch to this project's route, or stop publishing if it has none."""
+        """Switch to this project's route, or stop publishing if the project has no such route."""
         self._project = project
 
     def tick(self, now: float) -> None:

@@ -1,4 +1,4 @@
-"""The plan of an exhibition in this process, or of the parts of one, before anything is made."""
+"""The plan of an exhibition in this process, or of some parts of an exhibition, before anything is made."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field

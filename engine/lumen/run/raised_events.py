@@ -47,7 +47,7 @@ def _schemas(project: Project, name: str) -> Iterator[Mapping[str, Any]]:
 
 
 def _right(schema: Mapping[str, Any]) -> str:
-    """Return a sentence that lists the allowed fields and their types; empty if the schema has none."""
+    """Return a sentence that lists the allowed fields and their types; empty if the schema has no fields."""
     fields = schema.get("properties")
     if not isinstance(fields, Mapping) or not fields:
         return ""

@@ -44,7 +44,7 @@ class Rehearsal:
 
 
 class RehearsalTrace(Narrator):
-    """A narrator that keeps the last `remembered` lines, or all lines if that is None: time [s], who, and what."""
+    """A narrator that keeps the last `remembered` lines (None: all), each with its time [s], actor and text."""
 
     explains = True
 

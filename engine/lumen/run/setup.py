@@ -40,7 +40,7 @@ class Setup:
     """Lets controllers follow sightings; None if the exhibition does so itself."""
 
     def hurry(self) -> None:
-        """End the clock's current wait, if it can, for something urgent."""
+        """End the clock's current wait, if the clock can, for an urgent task."""
         if isinstance(self.clock, Dozes):
             self.clock.hurry()
 

@@ -105,7 +105,7 @@ def wav(data: bytes) -> Sound:
 
 
 def save(file: Path, sound: Sound) -> None:
-    """Write a WAV file. Raises ModuleError if that fails."""
+    """Write a WAV file. Raises ModuleError if the file can't be written."""
     try:
         with file.open("wb") as opened:
             _write(opened, sound)

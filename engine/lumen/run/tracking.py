@@ -100,7 +100,7 @@ class LocalTracking:
 
 
 def _angles(body: Any, joints: tuple[str, ...]) -> dict[str, float]:
-    """Return the angles of these joints [rad] in a message of the joint route; empty if one is missing."""
+    """Return the angles of these joints [rad] in a message of the joint route; empty if any is missing."""
     names, angles = (body.get("name"), body.get("angle")) if isinstance(body, Mapping) else (None, None)
     if not isinstance(names, list) or not isinstance(angles, list):
         return {}

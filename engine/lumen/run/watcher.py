@@ -253,7 +253,7 @@ def _whole(files: WatchedFiles, before: WatchedFiles) -> bool:
 
 
 def _end(text: bytes) -> bytes:
-    """Return the last line of a file with its line break; empty if it has none or can't be read."""
+    """Return the last line of a file with its line break; empty if the file has no line or can't be read."""
     lines = [] if isinstance(text, Unreadable) else text.splitlines(keepends=True)
     return lines[-1] if lines else b""
 

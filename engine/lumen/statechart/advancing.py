@@ -1,4 +1,4 @@
-"""Moves one `do` forward from action to action until it awaits something or ends."""
+"""Moves one `do` forward from action to action until it has to wait or ends."""
 
 import re
 from dataclasses import replace
@@ -73,7 +73,7 @@ def resumption_of(node: StateNode) -> str:
 
 
 class Advance:
-    """Moves one `do` forward until it awaits something; `started` collects the ids that it began."""
+    """Moves one `do` forward until it has to wait; `started` collects the ids that it began."""
 
     __slots__ = ("context", "started")
 

@@ -115,7 +115,7 @@ def compile_assignment(way: str, value: ComputedValue) -> tuple[str, Callable[[S
     """Return the context key that an entry of `assign` changes, and a function that computes its new value.
 
     For a path into a map, such as `a.b`, the value is a copy of the map with the value at the end of the path; the
-    function raises ExpressionError if something on the path is not a map.
+    function raises ExpressionError if a value on the path is not a map.
     """
     compute = compile_value(value)
     key, *within = way.split(".")

@@ -16,7 +16,7 @@ TimerPolicy = Literal["deadline", "remaining", "restart"]
 def serialize(machine: MachineDefinition, snapshot: Snapshot) -> dict[str, Any]:
     """Return the snapshot as JSON data that identifies its machine.
 
-    Raises SnapshotError if it holds a value from an event that is not JSON.
+    Raises SnapshotError if the snapshot holds a value from an event that is not JSON data.
     """
     try:
         return _data(machine, snapshot)

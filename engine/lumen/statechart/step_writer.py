@@ -2,8 +2,8 @@
 
 From an event in a configuration on, the writer follows the algorithm with everything that is `Certain`: the active
 states, the raised events, the `do` that begin. Values that only a step has (the context, ids, times) are computed by
-the text. If such a value decides something, as in a guard, both branches are written. Unsupported parts end in `return
-None`, and so does any exception: the full algorithm then computes the step from its beginning.
+the text. If a decision depends on such a value, as in a guard, both branches are written. Unsupported parts end in
+`return None`, and so does any exception: the full algorithm then computes the step from its beginning.
 
 The text names the user's states and commands by constants (`c0`, `c1`, …), so that steps that differ only in them share
 one text.

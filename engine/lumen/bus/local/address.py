@@ -34,7 +34,7 @@ class LocalAddress:
 
     @staticmethod
     def of(data: Mapping[str, Any]) -> "LocalAddress":
-        """Return the address in the data of a file. Raises BusAddressError if it has none."""
+        """Return the address in the data of a file. Raises BusAddressError if the data has no address."""
         try:
             return LocalAddress(str(data["path"]), int(data["port"]), str(data["key"]))
         except (KeyError, TypeError, ValueError, OverflowError) as error:
@@ -65,7 +65,7 @@ class LocalAddress:
 
 
 def listen(folder: Path) -> tuple[socket.socket, LocalAddress]:
-    """Return a socket that listens in a folder, and its address. Raises OSError if that fails.
+    """Return a socket that listens in a folder, and its address. Raises OSError on failure.
 
     If the folder's path is too long, the socket is in a temporary folder. Without Unix sockets, it is a port on
     loopback.

@@ -12,9 +12,9 @@ class Risk(IntEnum):
     """The reach of a change in a running exhibition, from the smallest to the greatest."""
 
     COSMETIC = 0
-    """Texts, stories, names: the same things happen."""
+    """Texts, stories, names: the course of events stays the same."""
     BEHAVIOR = 1
-    """States, transitions, guards, context, controllers: something else happens."""
+    """States, transitions, guards, context, controllers: the course of events changes."""
     MOTION = 2
     """Keyframes and head control: the robot moves differently."""
     WIRING = 3

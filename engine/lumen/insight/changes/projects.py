@@ -99,7 +99,7 @@ def _movements(old: Project, new: Project) -> Iterator[Change]:
 
 
 def _file_of_movement(change: Change, project: Project) -> str:
-    """Return the file of a change: that in the robot's own folder, else that for all robots; empty if there is neither.
+    """Return the file of a change: the one in the robot's own folder, else that for all robots; empty without either.
 
     No other robot's files were read.
     """

@@ -32,7 +32,7 @@ class Link:
     place: Place | None = None
     """The place in the files that defines the occurrence; None if no file does."""
     id: str = ""
-    """The id of the command, timer or message; empty if it has none."""
+    """The id of the command, timer or message; empty without an id."""
     values: Mapping[str, Any] = field(default_factory=dict)
     """The values that decided the occurrence: those of the guard's parts, or the data of the event."""
     number: int = 0

@@ -38,7 +38,7 @@ def tried_examples(functions: Iterable[FunctionDefinition]) -> Iterator[TriedExa
 
 
 def value_of(function: FunctionDefinition, example: FunctionExample) -> Any:
-    """Return the value of a function for the arguments of an example. Raises ExpressionError if it has none."""
+    """Return the value of a function for the arguments of an example. Raises ExpressionError if there is no value."""
     arguments = {name: literal(value) for name, value in example.arguments.items()}
     return compile_expression(unparse(with_arguments(parse_expression(function.expanded), arguments)))(Scope())
 

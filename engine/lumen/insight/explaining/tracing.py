@@ -150,7 +150,7 @@ class TracedContext(ExecutionContext):
         self._decide(eventless=True)
 
     def _settle(self, taken: tuple[Transition, ...] | None = None) -> None:
-        """Record the open decision about the trigger, and the transitions taken; None means that none were."""
+        """Record the open decision about the trigger, and the transitions that were taken; None if there were none."""
         assert self.trace is not None
         if self.pending:
             self.pending = False

@@ -45,7 +45,7 @@ class SearchNode:
         return self.snapshot.configuration
 
     def path(self) -> list["SearchNode"]:
-        """Return the nodes on the cheapest path to this one, itself included."""
+        """Return the nodes on the cheapest path to this node, which is the last of them."""
         node: SearchNode | None = self
         found = []
         while node:

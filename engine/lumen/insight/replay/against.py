@@ -26,7 +26,7 @@ from lumen.statechart import Snapshot, Step, deserialize, due, elapse, step
 from lumen.statechart.direct_entry import entered_directly
 
 Duration = Callable[[Project, BodyCommand], float]
-"""The duration of a command [s] for which the journal has none."""
+"""A function that returns the duration of a command [s] for which the journal has none."""
 
 GRACE = 120.0
 """The additional time, beyond the recorded one, that a visit may take to return home [s]."""

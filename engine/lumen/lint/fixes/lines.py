@@ -42,7 +42,7 @@ def once(diagnostic: Diagnostic, source: FileText) -> list[Fix]:
 
 
 def _said(line: str) -> str:
-    """Return the line without its comment; all of it if it has a quote, because a `#` could be part of a text."""
+    """Return the line without its comment; the whole line if it has a quote, because a `#` could be part of a text."""
     before = re.split(r"\s+#", line)[0]
     return before.rstrip() if "'" not in before and '"' not in before else line
 

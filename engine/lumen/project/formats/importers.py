@@ -58,8 +58,8 @@ def endings(kind: str) -> tuple[str, ...]:
 def reader(ending: str) -> Any:
     """Return the function that reads files with that ending, which must have a row.
 
-    Raises LumenError with the name of the package if that was installed beside Lumen and can't be imported; so does the
-    function if it returns something of another type.
+    Raises LumenError with the name of the package if the package was installed beside Lumen and can't be imported; so
+    does the function if it returns something of another type.
     """
     name = ending.lower()
     feature, row = owner("importers", name), table("importers")[name]

@@ -74,7 +74,7 @@ def parse_xml(file: str, content: bytes, namespace: str = "", *, most: int = MAX
     """Return the root of a file with at most `most` elements.
 
     Raises ForeignFileError if the file is not XML, is too large, or has a document type or entities. Tags of
-    `namespace`, and those without a namespace, are written without one. Attributes such as `xml:id` are left out.
+    `namespace`, and tags without a namespace, have only their local names. Attributes such as `xml:id` are left out.
     """
     check_size(file, content)
     return _XmlReader(file, namespace, most).read(content)

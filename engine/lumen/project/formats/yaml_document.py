@@ -21,7 +21,7 @@ _TAGS = {type(None): "null", bool: "bool", int: "int", float: "float", str: "str
 
 
 class _Dumper(yaml.SafeDumper):
-    """Writes YAML 1.2: only a text that would be read as another type gets quotes, so `on` has none."""
+    """Writes YAML 1.2: only a text that would be read as another type gets quotes, so `on` has no quotes."""
 
     def resolve(self, kind: Any, value: Any, implicit: Any) -> str:
         if kind is yaml.ScalarNode and implicit[0]:

@@ -25,7 +25,7 @@ _log = logging.getLogger(__name__)
 
 
 class RobotHost(CommandListener):
-    """Lumen Server for a robot, and for the hall around it if that is simulated.
+    """Lumen Server for a robot, and for the hall around the robot if the hall is simulated.
 
     The owner of the clock calls `tick`, which publishes and returns the robot's answers and perceptions since the last
     call. `listeners` are notified of commands from the bus.

@@ -126,7 +126,7 @@ def _moved(old: Project, new: Project, everywhere: MigrationPreview) -> Iterator
 
 
 def _says(old: MachineDefinition, new: MachineDefinition, identity: Identity, path: str) -> NodePath | None:
-    """Return the place of the `onReload` for a removed state; None if it still exists, or no `onReload` applies."""
+    """Return the place of the `onReload` for a removed state; None if it exists, or no `onReload` applies."""
     if identity.state(path) is not None:
         return None
     around: str | None = path

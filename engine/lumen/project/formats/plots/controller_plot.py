@@ -19,7 +19,7 @@ CURVE_RESOLUTION = 1000
 
 
 def controller_sheet(controller: ControllerDefinition) -> PlotSheet:
-    """Return a sheet with the membership functions of each variable, then each output over the inputs it depends on.
+    """Return a sheet with the membership functions of each variable, then each output over its inputs.
 
     An output of one input is a curve, one of two inputs a surface. With more inputs there is one curve for each, while
     the others have their resting values.
