@@ -54,6 +54,32 @@ def test_what_is_remembered_says_the_same(
     assert 0.0 <= memoization.newly_made() < 1.0
 
 
+TALK = b"""id: talk
+words: [words]
+states:
+  hall:
+    hears: {dance: hall}
+    states:
+      desk: {hears: {faq: desk}}
+"""
+WORDS = b"""phrases:
+  dance: {en: [tower]}
+answers:
+  faq:
+    - {phrases: {en: [tower]}, value: {en: It is old.}}
+    - {phrases: {en: [door]}, value: {en: It is new.}}
+"""
+
+
+def test_a_row_and_a_table_of_one_name_are_tried_apart(tmp_path: Path) -> None:
+    files = {"behaviors/talk.yaml": TALK, "behaviors/words/words.yaml": WORDS}
+    for content in (TALK, TALK.replace(b"id: talk", b"id: talk # of the hall")):
+        found = check_files(tmp_path, {**files, "behaviors/talk.yaml": content})[1]
+        assert [(each.code, str(each.place)) for each in found if each.place.file.endswith("words.yaml")] == [
+            ("shadowed-phrase", "behaviors/words/words.yaml:2:16")
+        ]
+
+
 def test_of_the_same_files_nothing_is_made_anew(project: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     check_files(project, read_files(project))
     keep_memory(project)

@@ -205,11 +205,11 @@ class _Examples(HeardRows):
     def rival(self, name: str, number: int, text: str) -> int | None:
         """Return the row of the table that answers a sentence instead of row `number`; None if no other row does."""
         key = name, text
-        if key not in self.tried:
+        if key not in self.tried.answers:
             hearing = hearing_of(self.machine)
             find = hearing.best(hearing.read(text), Hears(-1, name, (name,)), set(), {})
-            self.tried[key] = find and find.entry.row
-        row: int | None = self.tried[key]
+            self.tried.answers[key] = find and find.entry.row
+        row = self.tried.answers[key]
         return None if row == number else row
 
     def never(self, row: SaidRow, why: str, hint: str, taker: SaidRow | Transition | None = None) -> None:

@@ -37,10 +37,10 @@ class _Questions(HeardRows):
     @cached_property
     def slots(self) -> frozenset[str]:
         """The names that have a phrase made only of slots."""
-        found: frozenset[str] | None = self.tried.get(None)
+        found = self.tried.slots
         if found is None:
             found = frozenset(entry.name for _, entry in hearing_of(self.machine).finder.slots_only)
-            self.tried[None] = found
+            self.tried.slots = found
         return found
 
     def check(self) -> None:

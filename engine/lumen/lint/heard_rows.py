@@ -5,7 +5,7 @@ No statechart runs: the rules call `Hearing` directly, state by state.
 
 from collections.abc import Callable, Collection, Hashable, Iterable, Iterator, Mapping, Sequence
 from itertools import islice
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from lumen.language.diagnostics import Diagnostic, NodePath
 from lumen.language.machines import Hears, MachineDefinition, State, StateKind, Transition
@@ -65,6 +65,20 @@ class SaidPhrase(NamedTuple):
     """The phrase in its file; None if it comes with Lumen."""
 
 
+class TriedSentences:
+    """Results for sentences, which depend only on a behaviour's phrases, answers, lists and names that rows hear."""
+
+    def __init__(self) -> None:
+        self.names: dict[str, frozenset[str]] = {}
+        """By a sentence: the names of the phrases and answers that it contains."""
+        self.rows: dict[tuple[tuple[str, ...], str], tuple[str, ...]] = {}
+        """By the keys of a state's rows and a sentence: the keys of the rows whose phrases count, in their order."""
+        self.answers: dict[tuple[str, str], int | None] = {}
+        """By a table of answers and a sentence: the row that answers it; None if no row does."""
+        self.slots: frozenset[str] | None = None
+        """The names that have a phrase made only of slots; None if they were not looked for."""
+
+
 class HeardRows:
     """The rows of one behaviour by the paths of their states; unreadable rows are left out."""
 
@@ -76,8 +90,8 @@ class HeardRows:
         self.by_number = {number: row for row in self for number in row.numbers}
         machine, heard = self.machine, frozenset(name for row in self for name in row.hears.names)
         given = machine.phrases, machine.answers, machine.lists, machine.anyhow, heard
-        self.tried: dict[Hashable, Any] = memoize(("tried sentences", behavior), given, dict)
-        """What was found in sentences, which depends on phrases and answers only: most edits change neither."""
+        self.tried = memoize(("tried sentences", behavior), given, TriedSentences)
+        """The sentences tried so far, kept from run to run: most edits change neither phrases nor answers."""
 
     def __iter__(self) -> Iterator[SaidRow]:
         return (row for rows in self.by_state.values() for row in rows)
@@ -88,19 +102,19 @@ class HeardRows:
 
     def names_in(self, text: str) -> frozenset[str]:
         """Return the names of the phrases and answers that a sentence contains."""
-        found: frozenset[str] | None = self.tried.get(text)
+        found = self.tried.names.get(text)
         if found is None:
-            found = self.tried[text] = frozenset(hearing_of(self.machine).read(text).finds)
+            found = self.tried.names[text] = frozenset(hearing_of(self.machine).read(text).finds)
         return found
 
     def found_in(self, path: str, text: str) -> list[SaidRow]:
         """Return the rows of the state at that path whose phrases count in a sentence, in the order of `order`."""
         rows = {row.hears.key: row for row in self.by_state[path]}
-        keys: tuple[str, ...] | None = self.tried.get((*rows, text))
+        keys = self.tried.rows.get((tuple(rows), text))
         if keys is None:
             order = self.order(path, text)
             keys = tuple(self.by_number[one.number].hears.key for one in (*order.first, *order.late) if one.find)
-            self.tried[*rows, text] = keys
+            self.tried.rows[tuple(rows), text] = keys
         return [rows[key] for key in keys]
 
     def taker(self, taken: Sequence[Taken], row: SaidRow) -> Taken | None:
