@@ -60,6 +60,12 @@ NOT_COMPARED = {"documents", "sections", "verbs"}
 SHOW_CHANGED = "the output to lamps, screens and sound desks (`modules.show`) changed"
 CASES: list[tuple[str, list[tuple[str, str, str]], list[str], Risk]] = [
     (
+        "how long the journal is kept",
+        [("lumen.yaml", "name: Lumen at", "journal: {keep: 3}\nname: Lumen at")],
+        ["`journal.keep` is now `3`, not `30.0`"],
+        Risk.COSMETIC,
+    ),
+    (
         "another name of the robot",
         [("lumen.yaml", "name: NAO", "name: ANA")],
         ["the robot's name changed: it takes effect at the next start"],
@@ -250,6 +256,14 @@ def test_a_changed_text_is_whole_before_and_now_with_its_line() -> None:
     )
     assert (said["file"], said["line"]) == (TOUR, 1 + was.splitlines().index(long))
     assert change_data(change, replace(new, documents={}))["line"] is None
+
+
+def test_values_are_written_as_in_the_file() -> None:
+    one, several = (
+        edited(("lumen.yaml", "robot: {name: NAO, model: nao}", robots))
+        for robots in ("robot: {name: NAO, model: nao}", "robots: {NAO: {model: nao, at: {x: 1, y: 0}}}")
+    )
+    assert "`aliases` is now `false`, not `null`" in [change.sentence for change in changes(one, several)]
 
 
 HOUSE = "robots: {NAO: {model: nao, at: {x: 1, y: 0}}, ANA: {model: nao, at: {x: 0, y: 0}}}"

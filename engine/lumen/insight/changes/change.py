@@ -97,9 +97,13 @@ def quoted(text: str) -> str:
     return f"“{line if len(line) <= MAX_SHOWN_CHARACTERS else line[: MAX_SHOWN_CHARACTERS - 1] + '…'}”"
 
 
+_IN_YAML = {None: "null", True: "true", False: "false"}
+
+
 def code(value: Any) -> str:
     """Return a name, an expression or a value as one line in backticks, cut to `MAX_SHOWN_CHARACTERS`."""
-    text = str(value).replace("\n", " ")
+    text = _IN_YAML.get(value) if value is None or isinstance(value, bool) else None
+    text = text or str(value).replace("\n", " ")
     return f"`{text if len(text) <= MAX_SHOWN_CHARACTERS else text[: MAX_SHOWN_CHARACTERS - 1] + '…'}`"
 
 

@@ -17,7 +17,8 @@ MAX_SUMMARY_CHANGES = 4
 
 _SHARED_MOVEMENTS = ("gestures", "life")
 """The folders in motions/ that are for all robots; every other folder is named after a robot's model."""
-_SELF = ("root", "hash", "documents")
+_SELF = ("root", "hash", "documents", "told_apart")
+"""Fields that are no settings: those of the files themselves, and one that follows from `robots`."""
 
 
 def changes(old: Project, new: Project) -> tuple[Change, ...]:

@@ -1,7 +1,7 @@
 """The changes in the sections of lumen.yaml that features add."""
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import replace
+from dataclasses import fields, is_dataclass, replace
 from typing import Any
 
 from lumen.feature import Section, table
@@ -28,8 +28,14 @@ def section_changes(old: Project, new: Project, among: Callable[[Section], bool]
             yield Change("fixed", key, f"{row.title} changed: {AT_NEXT_START}", risk, MAIN_FILE)
         elif row.title:
             yield Change(key.rpartition(".")[2], "", f"{row.title} changed", risk, MAIN_FILE)
+        elif not is_dataclass(after):
+            yield Change("setting", key, f"`{key}` changed", risk, MAIN_FILE)
         else:
-            yield Change("setting", key, f"`{key}` is now {code(after)}, not {code(before)}", risk, MAIN_FILE)
+            for name in (one.name for one in fields(after)):
+                was, now = getattr(before, name), getattr(after, name)
+                if was != now:
+                    about = f"{key}.{name}"
+                    yield Change("setting", about, f"`{about}` is now {code(now)}, not {code(was)}", risk, MAIN_FILE)
 
 
 def live_sections(old: Project, new: Project) -> dict[str, object]:
@@ -39,7 +45,7 @@ def live_sections(old: Project, new: Project) -> dict[str, object]:
     return {**{key: settings for key, settings in new.sections.items() if key not in fixed}, **kept}
 
 
-def _both(old: Project, new: Project, key: str) -> tuple[object, object]:
+def _both(old: Project, new: Project, key: str) -> tuple[Any, Any]:
     """Return a section before and after.
 
     A project that lacks the section has its defaults; if both projects lack it, return None twice.
