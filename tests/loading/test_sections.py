@@ -58,16 +58,8 @@ CHANGED = {
     "places": ("{organ: {x: 0.1, y: 0.2}}", "place `organ` added (behavior)"),
     "imperfections": ("{noise: false}", f"the robot's imperfections {NEXT} (restart)"),
     "alerts": ("{to: [{command: [./page.sh]}]}", "the recipients of alerts (`alerts`) changed (cosmetic)"),
-    "journal": (
-        "{keep: 7}",
-        "`journal` is now `JournalRetention(keep=7, size=2000.0)`, not `JournalRetention(keep=30.0, size=2000.0)` "
-        "(cosmetic)",
-    ),
-    "record": (
-        "{keep: 7}",
-        "`record` is now `RecordingSettings(ring=0.0, keep=7, size=5000.0, camera=Tru…`, not "
-        "`RecordingSettings(ring=0.0, keep=30.0, size=5000.0, camera=…` (cosmetic)",
-    ),
+    "journal": ("{keep: 7}", "`journal.keep` is now `7`, not `30` (cosmetic)"),
+    "record": ("{keep: 7}", "`record.keep` is now `7`, not `30` (cosmetic)"),
     "reload": ("{replay: warn}", "the check of saved files on recorded visits (`reload`) changed (cosmetic)"),
     "console": ("{port: 8123}", f"the console {NEXT} (restart)"),
     "modules.show": (

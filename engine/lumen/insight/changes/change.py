@@ -101,9 +101,16 @@ _IN_YAML = {None: "null", True: "true", False: "false"}
 
 
 def code(value: Any) -> str:
-    """Return a name, an expression or a value as one line in backticks, cut to `MAX_SHOWN_CHARACTERS`."""
-    text = _IN_YAML.get(value) if value is None or isinstance(value, bool) else None
-    text = text or str(value).replace("\n", " ")
+    """Return a name, an expression or a value as one line in backticks, cut to `MAX_SHOWN_CHARACTERS`.
+
+    Values are written as in YAML: `null`, `true`, `30` for 30.0, and `""` for the empty text.
+    """
+    if value is None or isinstance(value, bool):
+        text = _IN_YAML[value]
+    elif isinstance(value, float):
+        text = f"{value:.15g}"
+    else:
+        text = str(value).replace("\n", " ") or '""'
     return f"`{text if len(text) <= MAX_SHOWN_CHARACTERS else text[: MAX_SHOWN_CHARACTERS - 1] + '…'}`"
 
 
