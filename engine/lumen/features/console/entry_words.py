@@ -165,7 +165,7 @@ def _by(cause: object, words: EntryPhrases) -> str:
 def _did(entry: Mapping[str, Any], words: EntryPhrases) -> Iterator[str]:
     entered = entry.get("entered")
     if isinstance(entered, list) and entered:
-        yield f"→ {entered[-1]}"
+        yield f"→ {', '.join(map(str, entered))}"
     for kind, said in _begun(entry):
         match said:
             case {"text": str(text)} if kind == "Say":
