@@ -2,8 +2,9 @@
 
     python benchmarks/pairs.py CHECKOUT [--pairs 9] [--rows WORD …]
 
-Each checkout runs its own scripts and its own engine, both with this Python. A pair runs one row in both checkouts, one
-after the other, and the next pair in the other order, so that a load which changes slowly meets both.
+Each checkout runs its own scripts and its own engine, both with this Python. The project that they measure, the tour,
+is that of the other checkout: a tour that has grown doesn't count as a slower engine. A pair runs one row in both
+checkouts, one after the other, and the next pair in the other order, so that a load which changes slowly meets both.
 
 For each figure of a row: the medians, the median of the pairs' ratios (above 1: this checkout is slower), and the
 middle half of the same ratios between successive runs of the other checkout, which is what chance does on this
@@ -13,7 +14,9 @@ machine (A/A). `worse` means that the ratio is above 1.05 and above that middle 
 import argparse
 import os
 import re
+import shutil
 import sys
+import tempfile
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
 from pathlib import Path
@@ -24,6 +27,8 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 
 from all import ROWS, Row
 from tests.guarded import run_guarded
+
+from lumen.project.project_folders import MAIN_FILE, PROJECT_FOLDERS
 
 ROOT = Path(__file__).parents[1]
 NUMBER = re.compile(r"\d[\d,]*(?:\.\d+)?")
@@ -63,27 +68,46 @@ def main() -> int:
         parser.error("--pairs must be at least 3: the spread needs two successive ratios")
     if not (options.checkout / "benchmarks/all.py").exists():
         parser.error(f"there is no benchmarks/all.py in {options.checkout}")
-    worse = 0
+    worse, checkout = 0, options.checkout.resolve()
     print(f"{'':<58}{'there':>10}{'here':>10}{'ratio':>8}  A/A", flush=True)
-    for row in ROWS:
-        # `make quick` runs other tests in each checkout.
-        if any(word in row.what for word in options.rows) and "make quick" not in row.what:
-            for line in _compared(row, options.checkout.resolve(), options.pairs):
-                worse += line.endswith("worse")
-                print(line, flush=True)
+    with tempfile.TemporaryDirectory() as folder:
+        here = _with_project_of(checkout, Path(folder) / "here")
+        for row in ROWS:
+            # `make quick` runs other tests in each checkout.
+            if any(word in row.what for word in options.rows) and "make quick" not in row.what:
+                for line in _compared(row, here, checkout, options.pairs):
+                    worse += line.endswith("worse")
+                    print(line, flush=True)
     return bool(worse)
 
 
-def _compared(row: Row, checkout: Path, pairs: int) -> Iterator[str]:
-    runs: dict[Path, list[list[float]]] = {ROOT: [], checkout: []}
+def _with_project_of(checkout: Path, folder: Path) -> Path:
+    """Fill a new folder with links to this checkout, and with the project's files of the other; return the folder."""
+    folder.mkdir()
+    project = {MAIN_FILE, *PROJECT_FOLDERS}
+    for path in ROOT.iterdir():
+        if path.name not in (*project, ".lumen"):
+            (folder / path.name).symlink_to(path)
+    for name in filter(lambda name: (checkout / name).exists(), project):
+        if name == MAIN_FILE:
+            shutil.copy(checkout / name, folder)
+        else:
+            shutil.copytree(checkout / name, folder / name)
+    # The engine's own schemas are in the same folder as the project's messages.
+    shutil.copytree(ROOT / "schemas", folder / "schemas", ignore=shutil.ignore_patterns("messages"), dirs_exist_ok=True)
+    return folder
+
+
+def _compared(row: Row, here: Path, checkout: Path, pairs: int) -> Iterator[str]:
+    runs: dict[Path, list[list[float]]] = {here: [], checkout: []}
     try:
         for pair in range(pairs):
-            for place in (ROOT, checkout) if pair % 2 else (checkout, ROOT):
+            for place in (here, checkout) if pair % 2 else (checkout, here):
                 runs[place].append(_measured(row, place))
     except NotMeasuredError as why:
         yield f"{row.what:<58}{why}"
         return
-    columns = zip(zip(*runs[ROOT], strict=True), zip(*runs[checkout], strict=True), strict=False)
+    columns = zip(zip(*runs[here], strict=True), zip(*runs[checkout], strict=True), strict=False)
     for number, (ours, theirs) in enumerate(columns):
         if number not in row.ours:
             continue
