@@ -28,7 +28,9 @@ SAID = {"Start": {"id": "d1", "command": {"Say": {"text": "Selamat datang", "lan
          "tanda: he waved, oleh Budi"),
     ],
 )  # fmt: skip
-def test_a_line_is_told_in_the_language_of_the_page(entry: dict[str, Any], english: str, indonesian: str | None) -> None:
+def test_a_line_is_told_in_the_language_of_the_page(
+    entry: dict[str, Any], english: str, indonesian: str | None
+) -> None:
     told = told_of(entry)
     assert (told["text"], told.get("texts")) == (english, indonesian and {"id": indonesian})
 

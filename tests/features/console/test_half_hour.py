@@ -26,8 +26,8 @@ WAIT = 180.0
 """Seconds that a page may need on a busy machine."""
 LOOK = 0.25
 """Seconds between two looks at a page."""
-ROUNDS = 20
-"""Rounds of all scenes in half an hour."""
+HALF_HOUR = 1800.0
+"""Seconds after which no further round of all scenes begins."""
 SOON = 1.0
 """Seconds after which 9 of 10 alarms must be on a page."""
 PAGES = ("", "/day", "/files", "/see")
@@ -234,7 +234,8 @@ def test_whatever_happens_is_seen_on_the_pages_and_mended_from_them(
 def test_half_an_hour_of_it(house_on_its_broker: House, chromium: Chromium) -> None:
     operator, draw = Operator(house_on_its_broker, chromium, timed=True), Random(18)
     begin(house_on_its_broker, operator)
-    for _ in range(ROUNDS):
+    end = time() + HALF_HOUR
+    while time() < end:
         for scene in draw.sample(SCENES, len(SCENES)):
             scene(house_on_its_broker, operator)
     operator.looks_at("/day")
@@ -242,7 +243,10 @@ def test_half_an_hour_of_it(house_on_its_broker: House, chromium: Chromium) -> N
     late = {}
     for kind, times in operator.times.items():
         most = quantiles(times, n=10, method="inclusive")[-1]
-        sys.stdout.write(f"{kind} is on a page after {median(times):.2f} s, 9 of 10 within {most:.2f} s\n")
+        sys.stdout.write(
+            f"{kind}, {len(times)} times: on a page after {median(times):.2f} s, "
+            f"9 of 10 within {most:.2f} s, all within {max(times):.2f} s\n"
+        )
         if most > SOON:
             late[kind] = most
     assert not late

@@ -36,6 +36,16 @@ def test_a_ring_says_what_it_has_and_what_it_has_not() -> None:
     assert ring.after(9_999) == []
 
 
+def test_a_page_that_begins_receives_what_has_a_text_however_many_faces_came_after_it() -> None:
+    ring = EntryRing("NAO")
+    ring.begin(-1)
+    heard = {3: "touched", 5: "touched", 700: "touched"}
+    ring.add(ToldPage([{"position": n, "heard": heard.get(n, "face"), "at": n / 10} for n in range(1_500)]))
+    assert [entry.position for entry in ring.recent(100)] == [3, 5, 700, 1_499]
+    assert [entry.position for entry in ring.recent(2)] == [700, 1_499]
+    assert EntryRing("NAO").recent(100) == []
+
+
 def test_many_pages_hear_the_same(browser: Browser, hosted: Hosted) -> None:
     streams = [Stream(browser, "/api/events?after=-1") for _ in range(20)]
     try:

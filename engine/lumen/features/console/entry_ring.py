@@ -22,6 +22,8 @@ class EncodedEntry(NamedTuple):
 
     position: int
     data: bytes
+    has_text: bool
+    """False for an entry that no page shows, such as a face without an effect."""
 
 
 class EntryRing:
@@ -59,11 +61,17 @@ class EntryRing:
         begin = bisect_right(self._kept, position, key=lambda entry: entry.position)
         return list(islice(self._kept, begin, begin + PAGE))
 
+    def recent(self, count: int) -> Sequence[EncodedEntry]:
+        """Return the newest entry and, before it, the latest ones with a text: up to `count`, the oldest first."""
+        wanted = (entry for entry in reversed(self._kept) if entry.has_text or entry.position == self.last)
+        return [*islice(wanted, count)][::-1]
+
     def encoded(self, page: ToldPage) -> list[EncodedEntry]:
         """Encode the entries of a page, each with its robot, its time (ISO 8601), a line of text and its kind."""
         found, clock = [], EntryClock(page)
         for entry in page.entries:
-            more = {"robot": self.robot, "at_time": clock.of(entry), **told_of(entry)}
+            words = told_of(entry)
+            more = {"robot": self.robot, "at_time": clock.of(entry), **words}
             shown = {key: value for key, value in entry.items() if key != "snapshot"}
-            found.append(EncodedEntry(entry["position"], orjson.dumps({**shown, **more})))
+            found.append(EncodedEntry(entry["position"], orjson.dumps({**shown, **more}), bool(words["text"])))
         return found

@@ -14,8 +14,10 @@ HEARTBEAT = 1.0
 """A page receives at least a comment this often [s]."""
 NOW_PERIOD = 0.25
 """The shortest time between two `now` events of a robot [s]."""
-RECENT = 100
-"""A page without a position first receives this many of the latest entries."""
+RECENT = 200
+"""A page without a position first receives at most this many of the latest entries, only those with a text."""
+FRESH = -2
+"""The position of a page that has no entries."""
 AGAIN = 500
 """The pause of a browser before it reconnects [ms]."""
 
@@ -114,12 +116,11 @@ class Streams:
     def _cursor(self, cursors: dict[str, ReadPosition], view: KnownRobot, who: Listener) -> ReadPosition:
         entries = view.entries
         if (cursor := cursors.get(view.robot)) is None:
-            cursor = cursors[view.robot] = ReadPosition(who.after.get(view.robot, who.after.get("", -2)), -1)
+            cursor = cursors[view.robot] = ReadPosition(who.after.get(view.robot, who.after.get("", FRESH)), -1)
         if cursor.run < 0 and entries.known:
             cursor.run = entries.run
-            if cursor.position == -2:
-                cursor.position = max(entries.first, entries.last - RECENT)
-            elif cursor.position > max(entries.last, view.position or cursor.position):  # of a journal that is gone
+            newest = max(entries.last, view.position or cursor.position)
+            if cursor.position > max(newest, FRESH):  # of a journal that is gone
                 cursor.position = entries.first
         elif cursor.run >= 0 and cursor.run != entries.run:
             cursor.run, cursor.position = entries.run, entries.first
@@ -128,7 +129,8 @@ class Streams:
     async def _entries(self, view: KnownRobot, cursor: ReadPosition) -> AsyncIterator[EncodedEntry]:
         """Yield the new entries of a robot's journal: from the ring, or from its exhibition if they are older."""
         while cursor.run >= 0 and not self.closing:
-            found = view.entries.after(cursor.position)
+            entries = view.entries
+            found = entries.recent(RECENT) if cursor.position == FRESH else entries.after(cursor.position)
             if found is None:
                 try:
                     page = await self._watch.page(view.robot, cursor.position + 1)

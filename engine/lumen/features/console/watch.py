@@ -10,6 +10,7 @@ from typing import Any
 from lumen.errors import BusError, BusUnreachableError
 from lumen.features.console.bus_link import BusLink
 from lumen.features.console.entry_clock import ToldPage
+from lumen.features.console.entry_ring import KEPT
 from lumen.features.console.exchanges import Exchanges
 from lumen.features.console.known_robot import KnownRobot
 from lumen.features.console.robot_keys import PRESENCE, KeyBook
@@ -53,8 +54,6 @@ SENSES_PERIOD = 1.0
 FILES_PERIOD = 3.0
 """The time between two requests about an exhibition's files [s]."""
 QUESTION_TIMEOUT = 2.0
-BEFORE = 500
-"""The number of entries before the newest that are fetched at first."""
 MAX_ROBOTS = 50
 FULL_PAGE = 100
 """After a page with this many entries, the next one is requested at once."""
@@ -181,7 +180,7 @@ class Watch:
         if position is None and "position" in view.said:
             return False
         if not entries.known or (position is not None and position < entries.last):
-            entries.begin(max(-1, (position or 0) - BEFORE))
+            entries.begin(max(-1, (position or 0) - KEPT))
         if position is not None and position <= entries.last:
             return False
         return entries.add(await self.page(view.robot, entries.last + 1)) >= FULL_PAGE

@@ -9,8 +9,7 @@ import { redraw } from "./ui.js";
 const AGAIN = 500,
   ANSWER = 2500,
   QUESTION = 30000,
-  BEFORE = 600,
-  MOST = 300; // [ms], [ms], [ms], entries, entries
+  MOST = 300; // [ms], [ms], [ms], entries
 export const JOB = 250000; // [ms] longer than the console gives a process that computes something
 
 export const live = {
@@ -143,7 +142,7 @@ export async function connect() {
       again(mine, 2000);
       return;
     }
-    await read(mine, now.robots);
+    await read(mine);
   } catch (error) {
     const { status } = /** @type {{ status?: number }} */ (error);
     if (mine.signal.aborted) return;
@@ -167,27 +166,19 @@ function again(mine, pause) {
   timer = setTimeout(connect, pause);
 }
 
-/**
- * Where to continue: what was seen last of each robot, also of one that a new console has not found yet, else a few
- * entries before now.
- * @param {RobotSent[]} robots
- */
-function after(robots) {
-  const known = new Map();
-  for (const { robot, position } of robots) if (position != null) known.set(robot, Math.max(-1, position - BEFORE));
-  for (const [robot, [position]] of seen) known.set(robot, position);
-  return [...known]
+/** Where to continue: after what was seen last of each robot. Of other robots the console sends the latest entries. */
+function after() {
+  return [...seen]
     .filter(([robot]) => !lumen.robot || robot === lumen.robot)
-    .map(([robot, position]) => `${robot}:${position}`)
+    .map(([robot, [position]]) => `${robot}:${position}`)
     .join(",");
 }
 
 /**
  * Follow what happens until that is lost. What was before is asked for by itself; what comes meanwhile waits.
  * @param {AbortController} mine
- * @param {RobotSent[]} robots
  */
-async function read(mine, robots) {
+async function read(mine) {
   /** @type {string[] | null} */
   let waiting = [];
   let lose = () => {};
@@ -198,7 +189,7 @@ async function read(mine, robots) {
   mine.signal.addEventListener("abort", lose);
   try {
     await blocks(
-      `/api/events?${params({ robot: lumen.robot, after: after(robots), once: 1 })}`,
+      `/api/events?${params({ robot: lumen.robot, after: after(), once: 1 })}`,
       (block) => take(block),
       mine.signal,
     );
