@@ -164,7 +164,7 @@ def sentences(file: str) -> Iterator[Prose]:
         ends = (
             fenced
             or not row.strip()
-            or row.lstrip().startswith(("-", "#", "|", "```", "<", "!"))
+            or row.lstrip().startswith(("- ", "#", "|", "```", "<", "!"))
             or row.startswith("    ")
         )
         if ends:
@@ -174,7 +174,7 @@ def sentences(file: str) -> Iterator[Prose]:
             text, start = "", number
         code = fenced or row.startswith("    ") or row.lstrip().startswith("```")
         if row.strip() and not code and not row.startswith(("#", "<", "!")):
-            text += (" " if text else "") + row.strip().lstrip("-*| ")
+            text += (" " if text else "") + row.strip().removeprefix("- ").lstrip("| ")
 
 
 def prose(file: str) -> Iterator[Prose]:
