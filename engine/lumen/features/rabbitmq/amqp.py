@@ -1,8 +1,8 @@
-"""The bus on RabbitMQ: pika on connections and threads of its own.
+"""The bus on RabbitMQ, which runs pika's connections on separate threads.
 
-One connection receives and one sends; a third thread runs the handlers. So heartbeats are answered while a handler
-works, and `publish` never waits for the network. After a lost connection, subscriptions are made again, and messages to
-be sent keep waiting. If a route carries stops, these have a separate set of all three.
+One connection receives and one sends; a third thread runs the handlers. Heartbeats are therefore answered while a
+handler works, and `publish` never waits for the network. After a lost connection, subscriptions are restored, and
+unsent messages keep waiting. Stops, if a route carries any, use a separate set of connections and threads.
 """
 
 import logging
@@ -26,7 +26,7 @@ from lumen.language.routes import Carried, Direction, Route
 from lumen.ports import Bus, Message, MessageHandler, Outgoing
 
 CLOSE_TIMEOUT = 5.0
-"""The time limit of closing [s]: waiting messages are sent, and received ones handled."""
+"""The time limit for closing the bus, while waiting messages are sent and received messages are handled [s]."""
 
 _log = logging.getLogger(__name__)
 
@@ -34,8 +34,8 @@ _log = logging.getLogger(__name__)
 class AmqpBus(Bus):
     """A bus on the exchange `amq.topic` of the broker at `url` (`amqp://` or `amqps://`).
 
-    The route of a key decides how its messages travel (`carry`). A message without a route waits in the outbox for a
-    broker that is away, and is sent once; after its `ttl` it is discarded, here or on the broker. `sender` is the name
+    A key's route (`carry`) decides how its messages are sent. A message without a route waits in the outbox while the
+    broker is away, and is sent only once; after its `ttl` it is discarded, here or on the broker. `sender` is the name
     of the program that uses the bus. Raises BusError, with the remedy, if the broker is unusable.
     """
 
@@ -66,12 +66,12 @@ class AmqpBus(Bus):
 
     @property
     def blocked(self) -> str:
-        """The resource that the broker lacks while it accepts no messages; empty while it accepts them."""
+        """The resource that the broker lacks while it accepts no messages; empty if it accepts them."""
         return self._outage.blocked
 
     @property
     def dropped(self) -> Mapping[str, int]:
-        """The number of dropped messages by key."""
+        """The number of dropped messages for each key."""
         found = Counter[str]()
         for transport in self._transports():
             for drops in transport.drops:
@@ -92,7 +92,10 @@ class AmqpBus(Bus):
             transport.consumer.carry(routes)
 
     def prepare(self, routes: Mapping[str, Route]) -> None:
-        """Bind queues for the incoming routes that gather messages until a handler subscribes."""
+        """Bind the queues of incoming routes, to store messages until a handler subscribes.
+
+        Raises BusError if the broker refuses a queue.
+        """
         self._open_stop(routes)
         for transport in self._transports():
             coming = {
@@ -101,9 +104,9 @@ class AmqpBus(Bus):
             transport.consumer.prepare(coming)
 
     def subscribe(self, pattern: str, handler: MessageHandler) -> Callable[[], None]:
-        """Call the handler with the messages of a pattern; return a function that unsubscribes it.
+        """Call the handler with each message that matches the pattern; return a function that unsubscribes it.
 
-        Raises BusError if the bus is closed, the pattern is invalid, or the broker refuses.
+        Raises BusError if the bus is closed, the pattern is invalid, or the broker refuses the subscription.
         """
         if self._closed:
             raise BusClosedError("the bus is closed: subscribing is no longer possible")
@@ -114,7 +117,7 @@ class AmqpBus(Bus):
         return lambda: consumer.remove(subscription)
 
     def send(self, message: Outgoing) -> None:
-        """Queue a message for sending. Raises BusError if the bus is closed or full, or a key is invalid."""
+        """Queue a message for sending. Raises BusError if the bus is closed or full, or a key or body is invalid."""
         if self._closed:
             raise BusClosedError("the bus is closed: publishing is no longer possible")
         key, body, reply_to, correlation_id, ttl, *_ = message
@@ -146,7 +149,7 @@ class AmqpBus(Bus):
         )
 
     def heard(self, key: str) -> bool:
-        """Return whether a process receives messages under this key; True while that is unknown."""
+        """Return whether a process receives messages under this key; True if unknown."""
         return self._transport_of(self._routes.get(key)).publisher.heard(key)
 
     def returns(self, handler: Callable[[str], None]) -> None:
@@ -157,8 +160,8 @@ class AmqpBus(Bus):
     def reply(self, message: Message, body: Any) -> None:
         """Reply to a message, unless it expects no reply.
 
-        A text for a queue is sent unchanged, as modules of 2015 expect `command finished`; everything else is JSON.
-        Raises BusError if the bus is closed.
+        A text for a queue is sent unchanged, because modules from 2015 expect `command finished`; every other body is
+        sent as JSON. Raises BusError if the bus is closed, the reply queue's name is invalid, or the body isn't JSON.
         """
         if not message.reply_to:
             return
@@ -168,7 +171,7 @@ class AmqpBus(Bus):
         self._transport.answer(message.reply_to, message.correlation_id, body, self.sender)
 
     def close(self) -> None:
-        """Deliver published messages, also to our own subscribers, within CLOSE_TIMEOUT, and end."""
+        """Deliver published messages, including those to our own subscribers, within CLOSE_TIMEOUT; then end."""
         if self._closed:
             return
         self._closed = True
@@ -178,7 +181,7 @@ class AmqpBus(Bus):
         self._end(deadline)
 
     def _open_stop(self, routes: Mapping[str, Route]) -> None:
-        """Open a separate transport for stops as soon as a route carries any, without waiting for it."""
+        """Start to open a separate transport for stops if a route carries any, without waiting for the connection."""
         with self._opening:
             if self._stop_transport is None and any(route.carried is Carried.STOP for route in routes.values()):
                 self._stop_transport = Transport(self._address, self._outage, "stop-")

@@ -1,4 +1,4 @@
-"""A separate channel for requests: a refusal by the broker closes it and affects nothing else."""
+"""A separate channel for requests: the broker's refusal closes this channel and affects nothing else."""
 
 from collections.abc import Callable
 from contextlib import AbstractContextManager
@@ -6,7 +6,7 @@ from typing import Any, Protocol
 
 
 class AskedConnection(Protocol):
-    """The connection of an `AskedChannel`: it can wait for a condition or a time [s], and open more channels."""
+    """The connection of an `AskedChannel`, which waits for a condition or a time [s] and opens more channels."""
 
     def until(self, done: Callable[[], object]) -> None: ...
 
@@ -18,7 +18,7 @@ class AskedConnection(Protocol):
 class AskedChannel:
     """Calls methods of pika's channel, waits for the broker's answer and returns it.
 
-    Raises ChannelClosedByBroker if the broker refuses, and whatever `until` raises.
+    Raises ChannelClosedByBroker if the broker refuses, and the connection's errors in `until`.
     """
 
     def __init__(self, connection: AskedConnection, channel: Any) -> None:
@@ -30,7 +30,7 @@ class AskedChannel:
         return lambda *args, **kwargs: self._request(getattr(self._channel, name), *args, **kwargs)
 
     def send(self, exchange: str, key: str, properties: Any) -> None:
-        """Send an empty message; if the broker refuses it, the next request raises."""
+        """Send an empty message; if the broker refuses it, the next request raises ChannelClosedByBroker."""
         self._channel.basic_publish(exchange, key, b"", properties)
 
     def close(self) -> None:

@@ -1,4 +1,4 @@
-"""The address of a broker, and one-line reasons why it can't be used."""
+"""A broker's address, and one-line reasons why the broker can't be used."""
 
 import logging
 import os
@@ -17,15 +17,15 @@ from lumen.errors import BusAddressError, BusError, BusRefusedError, BusUnreacha
 from lumen.language.addresses import fault_of_broker, public
 
 HEARTBEAT_INTERVAL = 10
-"""The time between heartbeats in both directions [s], unless the address has another."""
+"""The time between heartbeats in each direction [s], unless the address sets a different time."""
 SOCKET_TIMEOUT = 5.0
-"""The time that connecting, and each answer during login, may take [s]."""
+"""The time limit for the TCP connection [s]."""
 BROKER_TIMEOUT = 2 * SOCKET_TIMEOUT
-"""The time in which the broker must answer a request [s]."""
+"""The time limit for a whole login, and for the broker's answer to a request [s]."""
 CREDENTIALS_VARIABLE = "LUMEN_BUS_CREDENTIALS"
-"""The environment variable that names a file with `NAME:PASSWORD`."""
+"""The environment variable with the path of a file that contains `NAME:PASSWORD`."""
 MIN_RABBITMQ_VERSION = (3, 10)
-"""The first RabbitMQ whose quorum queues have a time to live."""
+"""The first RabbitMQ version that supports a message's time to live in quorum queues."""
 
 logging.getLogger("pika").setLevel(logging.CRITICAL)  # pika logs a traceback for every failure that we report
 
@@ -33,7 +33,7 @@ logging.getLogger("pika").setLevel(logging.CRITICAL)  # pika logs a traceback fo
 class BrokerAddress:
     """The parts of a broker's URL; `str` shows its host and port only.
 
-    Raises BusAddressError if the URL, its certificates or the file of credentials is unusable.
+    Raises BusAddressError if the URL, its certificates or the credentials file is unusable.
     """
 
     def __init__(self, url: str) -> None:
@@ -66,7 +66,7 @@ class BrokerAddress:
         return self.place
 
     def check_version(self, server: Mapping[str, Any]) -> None:
-        """Raise BusError if the broker is a RabbitMQ that is too old."""
+        """Raise BusUnreachableError if the broker is RabbitMQ before MIN_RABBITMQ_VERSION."""
         version = server.get("version", b"")
         text = version.decode(errors="replace") if isinstance(version, bytes) else str(version)
         numbers = tuple(int(n) for n in re.findall(r"\d+", text)[:2])
@@ -77,7 +77,7 @@ class BrokerAddress:
             )
 
     def explain(self, error: BaseException) -> BusError:
-        """Return the error, with its remedy, for a connection that could not be opened."""
+        """Return a BusError, with the remedy, for a failure to connect; return a BusError unchanged."""
         if isinstance(error, BusError):
             return error
         found = filter(None, map(self._explained, _causes(error)))
@@ -97,7 +97,7 @@ class BrokerAddress:
         return BusUnreachableError(reason) if reason else None
 
     def short_of(self, what: str) -> str:
-        """Return the message for a broker that accepts nothing because it is short of memory or disk space."""
+        """Return the message that the broker is short of the resource `what` and accepts no messages."""
         more = "run `rabbitmqctl status` to see its alarms and limits"
         return f"the broker at {self} is short of {what} and accepts no messages until it has enough: {more}"
 
@@ -123,19 +123,22 @@ class BrokerAddress:
 
 
 def shortage(reason: str) -> str:
-    """Return the resource that a broker is short of, from the reason that it gives for blocking."""
+    """Return the scarce resources in a broker's reason for blocking: memory, disk or both, else `resources`."""
     return " and ".join(word for word in ("memory", "disk") if word in reason) or "resources"
 
 
 def _authority(parts: SplitResult) -> tuple[str, str]:
-    """Return the file of trusted certificates in `?ca=FILE`, else an empty string; and the URL without it."""
+    """Return the file of trusted certificates from `?ca=FILE`, empty if missing, and the URL without `ca`."""
     query = dict(parse_qsl(parts.query))
     authority = query.pop("ca", "")
     return authority, parts._replace(query=urlencode(query)).geturl()
 
 
 def _trusting(authority: str) -> ssl.SSLContext:
-    """Return the context that checks certificates and their host names; there is no option to turn that off."""
+    """Return a TLS context that always checks certificates and host names.
+
+    Raises BusAddressError if the file `authority` has no usable certificates.
+    """
     try:
         return ssl.create_default_context(cafile=authority or None)
     except (OSError, ssl.SSLError) as error:
@@ -158,7 +161,7 @@ def _credentials(file: str) -> Any:
 
 
 def _causes(error: BaseException) -> Iterator[BaseException]:
-    """Yield the error's nested causes, the innermost first, then the error."""
+    """Yield the error's nested causes, innermost first, then the error itself."""
     packed = [getattr(error, "exception", None), *getattr(error, "exceptions", ())]
     inner: list[Any] = [*error.args, *packed, error.__cause__]
     for item in inner:

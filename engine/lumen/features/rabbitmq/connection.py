@@ -16,19 +16,20 @@ from lumen.upkeep.ratelimit import Backoff
 from lumen.upkeep.threads import WatchedThread
 
 MIN_RECONNECT_DELAY = 0.2
-"""The wait before the first attempt to reconnect [s]; it doubles with each further one."""
+"""The wait before the first attempt to reconnect [s]; it doubles with each further attempt."""
 MAX_RECONNECT_DELAY = 10.0
 """The longest wait before an attempt to reconnect [s]."""
 STABLE_TIME = 5.0
-"""After a connection that lasted this long [s], the next loss begins with the shortest wait again."""
+"""The duration after which the loss of a connection resets the wait to MIN_RECONNECT_DELAY [s]."""
 
 _log = logging.getLogger(__name__)
 
 
 class OutageLog:
-    """The state of one broker for all connections of a bus: each loss and each return is logged once.
+    """Tracks and logs the state of one broker for all connections of a bus.
 
-    The `repr` of every failure is logged; those after the first of an outage, and repeated ones, at level INFO.
+    In each outage, the recovery and the first failure of each kind are logged as warnings, repeated failures at level
+    INFO.
     """
 
     def __init__(self, address: BrokerAddress) -> None:
@@ -41,12 +42,12 @@ class OutageLog:
 
     @property
     def going_on(self) -> bool:
-        """Whether any of the connections is lost."""
+        """Whether at least one connection is lost."""
         return bool(self._away)
 
     @property
     def blocked(self) -> str:
-        """The resource that the broker lacks while it accepts no messages; empty while it accepts them."""
+        """The resource that the broker lacks while it accepts no messages; empty if it accepts them."""
         return next(iter(self._blocked.copy().values()), "")
 
     def block(self, connection: str, what: str) -> None:
@@ -63,7 +64,7 @@ class OutageLog:
             _log.warning("the broker at %s accepts messages again", self._address)
 
     def lost(self, connection: str, what: str, error: BaseException) -> None:
-        """Record that a connection is lost, and log it."""
+        """Record a lost connection, and log the error; `what` describes the kind of failure."""
         with self._changing:
             self._blocked.pop(connection, None)
             new = not self._away or what not in self._logged
@@ -72,7 +73,7 @@ class OutageLog:
         _log.log(logging.WARNING if new else logging.INFO, "the broker at %s %s: %r", self._address, what, error)
 
     def warn_once(self, what: str) -> None:
-        """Log a fault of the broker once, although every connection meets it."""
+        """Log a fault of the broker only once for all connections."""
         with self._changing:
             new = what not in self._faults
             self._faults.add(what)
@@ -80,7 +81,7 @@ class OutageLog:
             _log.warning("the broker at %s: %s", self._address, what)
 
     def back(self, connection: str) -> None:
-        """Record that a connection is back; log it if no other is lost."""
+        """Record that a connection is back; after the last lost one, log that the broker is back."""
         with self._changing:
             was = connection in self._away
             self._away.discard(connection)
@@ -94,8 +95,8 @@ class OutageLog:
 class BrokerConnection:
     """Connects, serves and reconnects; a subclass defines its work in `begin` and `serve`.
 
-    pika is used only on the connection's own thread. The first failure is raised by `open`; later ones are logged. Each
-    wait before reconnecting is twice as long as the last, up to 10 s, and is shortened at random by up to half.
+    Callbacks of pika run only on the connection's own thread. `open` raises the first failure; later failures are
+    logged. The wait before reconnecting doubles each time, up to 10 s, and is shortened at random by up to half.
     """
 
     def __init__(self, address: BrokerAddress, name: str, outage: OutageLog) -> None:
@@ -116,7 +117,7 @@ class BrokerConnection:
             raise self.address.explain(error) from error
 
     def begin_alone(self) -> None:
-        """Start connecting; failures are logged, and connecting is tried again."""
+        """Start connecting without waiting; each failure is logged, and connecting is retried."""
         self._opened.set_result(None)
         self._thread.start()
 
@@ -125,14 +126,14 @@ class BrokerConnection:
         return self._thread.join(max(0.0, timeout))
 
     def begin(self) -> None:
-        """Set up what is needed on the broker; called when the channel is open."""
+        """Prepare the broker, for example declare queues; called whenever a channel has opened."""
 
     def serve(self) -> bool:
-        """Do the pending work for at most a second; return False when the connection may end."""
+        """Do pending work for at most 1 s; return False if the connection can end."""
         raise NotImplementedError
 
     def process(self, seconds: float) -> None:
-        """Process the connection's events for at most `seconds`, then run other threads' requests."""
+        """Process the connection's events for at most `seconds`, then run the work from other threads."""
         self.connection.turn(seconds)
         self.connection.work()
 

@@ -22,24 +22,24 @@ from lumen.ports import MessageHandler
 from lumen.upkeep.drops import DropLog
 
 PREFETCH = 64
-"""The most deliveries that the broker sends ahead for each subscription."""
+"""The maximum number of unacknowledged deliveries for each subscription."""
 BIND_TIMEOUT = 5.0
-"""The longest time that a subscription waits for the broker to confirm it [s]."""
+"""The time limit for the broker's confirmation of a subscription [s]."""
 TURN_TIME = 1.0
-"""The longest time in one turn of the connection [s]."""
+"""The longest wait for events in one turn of the connection [s]."""
 FLOOD_PAUSE = 0.02
-"""The pause in reading after an excess of messages [s]: one tick, so that all of them are read at once."""
+"""The pause before the next read in a flood of messages [s], which lets one read return many of them."""
 UNBOUND_READ_TIME = 2.0
-"""The time for which a queue is still read after it is unbound [s]: by then its remaining messages have arrived."""
+"""The time for which an unbound queue is still read, to receive its remaining messages [s]."""
 
 _log = logging.getLogger(__name__)
 
 
 class Consumer(BrokerConnection):
-    """Passes deliveries within their rate to `receive`, and refused ones that must arrive to `refused`.
+    """Passes deliveries within their route's rate to `receive`, and excess ones that must arrive to `refused`.
 
-    Neither function may block. The broker sends `PREFETCH` messages ahead for each subscription and keeps a bounded
-    number more, which bounds the memory on both sides. `handled` acknowledges deliveries.
+    Neither function may block. The broker sends at most `PREFETCH` unacknowledged messages for each subscription and
+    stores a bounded number more, which limits the memory on both sides. `handled` acknowledges deliveries.
     """
 
     def __init__(
@@ -70,11 +70,11 @@ class Consumer(BrokerConnection):
             self._bind(subscription)
 
     def serve(self) -> bool:
-        """Process events for a turn; return False once the end is requested."""
+        """Process events for a turn; return False after `end` is called."""
         self.process(TURN_TIME)
         self.unreadable.tell()
         self.intake.drops.tell()
-        if self.intake.flooded:  # one read costs as much as many messages, so let them gather
+        if self.intake.flooded:  # one read costs as much as handling many messages, so let messages gather
             self.intake.flooded = False
             self.ending.wait(FLOOD_PAUSE)
         return not self.ending.is_set()
@@ -84,10 +84,10 @@ class Consumer(BrokerConnection):
         return self._subscriptions.active()
 
     def add(self, pattern: str, handler: MessageHandler, route: Route | None = None) -> Subscription:
-        """Subscribe; return once the queue is bound, or at once if the broker is away (it is bound on its return).
+        """Subscribe; wait up to BIND_TIMEOUT until the queue is bound, except while the broker is away.
 
-        Raises BusError if the broker refuses. After any call of `prepare`, `add` does not wait: a prepared queue is
-        already bound, others are bound when the broker answers, and refusals are logged.
+        Raises BusRefusedError if the broker refuses. After any call of `prepare`, `add` never waits: a prepared queue
+        is already bound, other queues are bound when the broker answers, and refusals are only logged.
         """
         if prepared := self._subscriptions.claim(pattern, handler):
             self._later(lambda: self._consume(prepared))
@@ -101,9 +101,9 @@ class Consumer(BrokerConnection):
         return subscription
 
     def prepare(self, routes: Mapping[str, Route]) -> None:
-        """Bind queues for these keys that gather messages until a handler subscribes; drop those prepared before.
+        """Bind queues that store these keys' messages until a handler subscribes; drop prepared queues of other keys.
 
-        Raises BusError if the broker refuses one.
+        Raises BusRefusedError if the broker refuses a queue.
         """
         self._hurried = True
         waiting, dropped = self._subscriptions.prepare(routes)
@@ -116,12 +116,12 @@ class Consumer(BrokerConnection):
                 self._await(subscription)
 
     def watch(self, unrouted: Callable[[str], None]) -> None:
-        """Call `unrouted` with the key of every message without a receiver that the broker reports."""
+        """Call `unrouted` with the key of each message that the broker reports as having no receiver."""
         subscription = self._subscriptions.add("#", lambda message: unrouted(message.key), None, UNROUTED)
         self._later(lambda: self._bind(subscription))
 
     def carry(self, routes: Mapping[str, Route]) -> None:
-        """Apply these routes; if one needs another queue, that is bound before the old one is unbound."""
+        """Apply these routes; if a route needs a different queue, bind that before unbinding the old queue."""
         for subscription in self.subscriptions():
             old, new = subscription.route, routes.get(subscription.pattern)
             subscription.route = new
@@ -129,7 +129,7 @@ class Consumer(BrokerConnection):
                 self._later(lambda s=subscription, r=old: self._move(s, r))  # type: ignore[misc]
 
     def remove(self, subscription: Subscription) -> None:
-        """Remove a subscription: its handler gets no further messages, and its queue is removed."""
+        """Remove a subscription; its handler gets no further messages, and unused queues are removed."""
         if self._subscriptions.remove(subscription):
             self._later(lambda: self._drop(subscription))
 
@@ -143,9 +143,9 @@ class Consumer(BrokerConnection):
             raise BusRefusedError(f"the broker at {self.address} {what}: {subscription.refusal}")
 
     def handled(self, delivery: Delivery) -> None:
-        """Acknowledge a delivery and all before it, so that the broker sends more.
+        """Acknowledge a delivery and all earlier ones, which lets the broker send more.
 
-        If they may be lost, they are acknowledged only in batches.
+        Deliveries that may be lost are acknowledged only in batches of half of PREFETCH.
         """
         enough = 1 if delivery.subscription.must_arrive else PREFETCH // 2
         if delivery.epoch == self._epoch and delivery.number - self._acknowledged >= enough:
@@ -153,7 +153,7 @@ class Consumer(BrokerConnection):
             self._later(lambda: self._acknowledge(delivery))
 
     def end(self, timeout: float) -> bool:
-        """Stop receiving and end; return whether that was done within `timeout` [s]."""
+        """Stop receiving and end the thread; return whether it ended within `timeout` [s]."""
         self.ending.set()
         self._later(lambda: None)
         return self.join(timeout)
@@ -167,7 +167,7 @@ class Consumer(BrokerConnection):
         return True
 
     def _bind(self, subscription: Subscription) -> None:
-        """Bind a subscription's queue; if the connection is lost meanwhile, the next one binds it."""
+        """Bind a subscription's queue; if the connection is lost meanwhile, the next connection binds the queue."""
         if not subscription.active or self.channel is None or subscription.epoch == self._epoch:
             return
         queue = queue_of(subscription.pattern, subscription.route, subscription.number, subscription.exchange)
@@ -203,7 +203,7 @@ class Consumer(BrokerConnection):
         self.connection.call_later(UNBOUND_READ_TIME, lambda: self._later(lambda: self._drop(unbound)))
 
     def _drop(self, subscription: Subscription) -> None:
-        """Stop reading a queue, and remove from the broker what no other process needs."""
+        """Stop reading a queue; remove it from the broker unless another subscription or process uses it."""
         if self.channel is None or not subscription.queue:
             return
         self.connection.cancel(subscription.tag)
@@ -244,5 +244,5 @@ class Consumer(BrokerConnection):
 
 
 def _short(key: str) -> str:
-    """Return as much of a key as AMQP can carry."""
+    """Return the key, cut to AMQP's limit MAX_KEY_BYTES."""
     return key.encode()[:MAX_KEY_BYTES].decode(errors="ignore")

@@ -1,4 +1,4 @@
-"""Declares queues on the broker, each over a channel of its own, so that a refusal affects nothing else."""
+"""Declares queues on the broker, each over a separate channel, so a refusal affects no other queue."""
 
 from collections.abc import Callable
 from contextlib import suppress
@@ -15,13 +15,13 @@ PRECONDITION_FAILED = 406
 
 
 class QueueDeclarer:
-    """Declares and deletes queues; remembers across outages which new queues a broker's crash could still lose."""
+    """Declares and deletes queues; `settling` names new queues that a crash of the broker can still lose."""
 
     def __init__(self) -> None:
         self.settling: set[str] = set()
 
     def declare(self, connection: PolledConnection, queue: Queue) -> tuple[str, str]:
-        """Declare and bind a queue; return its name and an empty text, or an empty name and the broker's refusal."""
+        """Declare and bind a queue; return its name and an empty string, or an empty name and the broker's refusal."""
         for attempt in self._attempts(queue):
             try:
                 with connection.asking() as channel:
@@ -33,7 +33,7 @@ class QueueDeclarer:
         return "", refusal
 
     def bind_again(self, connection: PolledConnection, subscription: Subscription) -> None:
-        """Bind a consumed queue again: a process that was leaving may have unbound it while it had no consumer."""
+        """Bind a consumed queue again, because a leaving process may have unbound it while it had no consumer."""
         with suppress(ChannelClosedByBroker), connection.asking() as channel:
             channel.queue_bind(subscription.queue, EXCHANGE, subscription.pattern)
 
@@ -43,9 +43,10 @@ class QueueDeclarer:
             channel.queue_unbind(subscription.queue, EXCHANGE, subscription.pattern)
 
     def remove(self, connection: PolledConnection, subscription: Subscription) -> None:
-        """Unbind a lasting queue that no other process reads.
+        """Remove a queue unless another process reads it.
 
-        It is deleted if it is empty. A quorum queue can't be deleted on that condition, and stays.
+        A queue of messages that must arrive is unbound, and deleted only if it is empty. A quorum queue is kept: RabbitMQ
+        can't delete it on that condition.
         """
         with suppress(ChannelClosedByBroker), connection.asking() as channel:
             self._remove(channel, subscription)
@@ -63,16 +64,16 @@ class QueueDeclarer:
             channel.queue_delete(name, if_unused=True, if_empty=must)
 
     def _attempts(self, queue: Queue) -> tuple[Callable[[AskedChannel, Queue], str], ...]:
-        """Return the declarations to try in turn if a queue of that name has other arguments."""
+        """Return the declarations to try in order while an existing queue has different arguments."""
         if queue.quorum:
             return self._declare_quorum, _adopt
         return (_declare, _renew, _adopt) if queue.name else (_declare,)
 
     def _declare_quorum(self, channel: AskedChannel, queue: Queue) -> str:
-        """Declare a quorum queue, and bind it once a crash of the broker can no longer lose its content.
+        """Declare a quorum queue, and bind it only when a crash of the broker can no longer lose its content.
 
-        A broker that is killed before that has no log for the queue and never answers for it, so the queue is declared
-        anew.
+        A broker that is killed earlier has no log for the queue and never answers requests about it. The queue is then
+        deleted and declared again.
         """
         if queue.name in self.settling:
             channel.queue_delete(queue.name)
@@ -107,12 +108,12 @@ def _declare(channel: AskedChannel, queue: Queue) -> str:
 
 
 def _renew(channel: AskedChannel, queue: Queue) -> str:
-    """Replace a queue of that name with other arguments, if it is empty and unused."""
+    """Replace an existing queue that has different arguments, if it is empty and unused."""
     channel.queue_delete(queue.name, if_unused=True, if_empty=True)
     return _declare(channel, queue)
 
 
 def _adopt(channel: AskedChannel, queue: Queue) -> str:
-    """Use the existing queue: nothing in it is lost, and it is replaced once it is empty."""
+    """Bind the existing queue despite its different arguments, which preserves its messages."""
     channel.queue_bind(queue.name, EXCHANGE, queue.key)
     return queue.name

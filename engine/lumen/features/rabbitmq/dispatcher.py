@@ -1,4 +1,4 @@
-"""The thread that runs handlers, one at a time, so that a slow handler delays no heartbeat."""
+"""A separate thread that runs handlers, one at a time: a slow handler delays no heartbeat."""
 
 import hashlib
 import logging
@@ -20,11 +20,11 @@ from lumen.upkeep.drops import DropLog, ReasonLog
 from lumen.upkeep.threads import MessageGuard, WatchedThread
 
 FLUSH_MARK = "lumen.mark"
-"""The type of a message that only marks that everything published before it has arrived."""
+"""The type of a mark: a message whose arrival shows that all earlier messages have arrived."""
 MAX_REMEMBERED_IDS = 10_000
-"""The most messages whose ids are remembered, to recognise repetitions; only messages that must arrive count."""
+"""The maximum number of remembered ids, by which repetitions of messages that must arrive are recognised."""
 MAX_SHOWN = 40
-"""The most characters of an id or a sender that a log message shows."""
+"""The maximum number of characters of an id or a sender in a log message."""
 
 _log = logging.getLogger(__name__)
 
@@ -32,10 +32,10 @@ _log = logging.getLogger(__name__)
 class Dispatcher:
     """Decodes deliveries and passes them to their handlers in the order received.
 
-    `handled` is called with each delivery that is finished, `refused` with an unusable one and the reason. Of
-    telemetry, only the newest messages are passed on, as many as the route keeps, while they are young enough. A
-    message that must arrive is passed on once, even if it comes twice. Ids belong to their sender: if a sender uses an
-    id again for a different message, that message is counted in `repeated` and refused.
+    `handled` is called with each finished delivery, `refused` with each unusable delivery and the reason. For
+    telemetry, handlers receive only the route's `keep` newest messages, within its `lifetime`. A message that must
+    arrive is passed on only once, even if it is delivered twice. If a sender reuses an id for a different message, that
+    message is counted in `repeated` and refused.
     """
 
     def __init__(self, handled: Callable[[Delivery], None], refused: Callable[[Delivery, str], None]) -> None:
@@ -56,18 +56,21 @@ class Dispatcher:
 
     @property
     def inside(self) -> bool:
-        """Whether the caller is a handler."""
+        """Whether the caller runs on the handlers' thread."""
         return self._thread.current
 
     def expect(self, marks: set[str]) -> threading.Event:
-        """Return an event that is set once a mark (FLUSH_MARK) with each of these bodies has arrived."""
+        """Return an event that is set when a message of type FLUSH_MARK has arrived for each body in `marks`."""
         self._marks = marks
         if not marks:
             self._marked.set()
         return self._marked
 
     def end(self, timeout: float) -> bool:
-        """Handle what has been received, then end; return whether that was done within `timeout` [s]."""
+        """Handle the received deliveries, then end; return whether the thread ended within `timeout` [s].
+
+        On the handlers' own thread, return True without waiting.
+        """
         self._waiting.put(None)
         return self.inside or self._thread.join(max(0.0, timeout))
 
@@ -95,7 +98,7 @@ class Dispatcher:
                 self._marked.set()
 
     def _wanted(self, subscription: Subscription, delivery: Delivery) -> bool:
-        """Return whether the delivery is neither too old, nor replaced by newer ones, nor a repetition."""
+        """Return False if the delivery is too old, displaced by newer deliveries, or a repetition."""
         route = subscription.route
         if route is None:
             return True
@@ -107,10 +110,11 @@ class Dispatcher:
         return not late and not (route.keep and subscription.taken - subscription.handled >= route.keep)
 
     def _new(self, subscription: Subscription, delivery: Delivery) -> bool:
-        """Return whether a delivery was not handled before; one without an id is recognised by its whole content.
+        """Return whether a delivery is new, judged by its sender and id; without an id, by its whole content.
 
-        A copy that the broker or its sender sent again, because it was not confirmed, does not count as lost. A message
-        without a time may also be a new one of a sender that restarted its ids; in that case a stop is handled twice.
+        Without an id, only a redelivery by the broker is a repetition. With a known id, the same content is a
+        repetition if the broker redelivered it or it has a time. Without a time, the sender may have restarted its ids.
+        Any other message with a known id is refused, except a stop, which counts as new.
         """
         id, sender = delivery.properties.message_id, delivery.properties.app_id
         digest = _digest(delivery)

@@ -1,4 +1,4 @@
-"""Limits the rate of deliveries: in a flood, each dropped message costs no more than reading the clock."""
+"""Limits the rate of deliveries, and drops excess messages cheaply in a flood."""
 
 import logging
 from collections.abc import Callable
@@ -8,27 +8,26 @@ from lumen.upkeep.drops import DropLog
 from lumen.upkeep.ratelimit import RateLimiter
 
 ANSWERED_RATE = 10.0
-"""The rate at which dropped messages of a key, if they must arrive, are answered and put aside [1/s].
+"""The maximum rate, for each key, at which dropped messages that must arrive are answered and put aside [1/s].
 
-Further ones are only counted.
+Further dropped messages are only counted.
 """
 SPENT_BATCH = 32
-"""The number of dropped messages after which more are requested from the broker; at most half of its prefetch limit."""
+"""The number of dropped messages after which they are acknowledged; at most half of the prefetch limit."""
 
 _log = logging.getLogger(__name__)
 
 Later = Callable[[float, Callable[[], None]], object]
-"""A function that calls another one on the same thread after a time [s]."""
+"""A function that calls the given function on the same thread after a delay [s]."""
 
 
 class Intake:
     """Passes at most as many deliveries per second to `receive` as their route accepts (`Route.rate`).
 
-    All methods run on one thread. Messages that must arrive are counted per sender, so that one sender can't crowd out
-    the commands of another. Keys without a route have no limit. If there is too much telemetry, the newest message
-    waits until there is room (`later`), because it holds the current values; a newer one replaces it. Excess messages
-    that must arrive are dropped, and some of them are passed to `refused` with the reason. Dropped messages are counted
-    in `drops`, under their key.
+    All methods run on one thread. Messages that must arrive are limited per sender, so one sender can't crowd out
+    another's commands. Keys without a route have no limit. Excess telemetry is dropped except the newest message, which
+    holds the current values and waits until the rate allows it (`later`). Excess messages that must arrive are dropped,
+    and some of them are passed to `refused` with the reason. `drops` counts dropped messages by key.
     """
 
     def __init__(
@@ -56,7 +55,7 @@ class Intake:
             self._hold(place, delivery, wait, rate)
 
     def forget(self) -> None:
-        """Forget the held deliveries: a new connection delivers them again, or they are lost with their queue."""
+        """Forget the held deliveries after a lost connection; the broker deleted them with their queues."""
         self._held.clear()
 
     def _wait(self, delivery: Delivery, rate: float) -> float:

@@ -1,4 +1,4 @@
-"""Messages that wait to be sent, bounded so that a broker's absence does not fill the memory."""
+"""A bounded queue of messages to be sent, which limits memory use while the broker is away."""
 
 import logging
 import threading
@@ -12,13 +12,13 @@ from lumen.language.causes import UNKNOWN_ORIGIN, MessageOrigin
 from lumen.upkeep.drops import DropLog
 
 MAX_PENDING_MESSAGES = 50_000
-"""The most messages that may wait, of those that need not arrive; beyond it the oldest are dropped."""
+"""The maximum number of waiting messages that may be lost; beyond it, the oldest are dropped."""
 MAX_PENDING_BYTES = 64 * 1024 * 1024
 """The maximum total size of waiting bodies [bytes], separately for messages that must arrive and those that may be
 lost.
 """
 MAX_PENDING_RELIABLE = 10_000
-"""The most messages that may wait, of those that must arrive; beyond it `put` raises."""
+"""The maximum number of waiting messages that must arrive; beyond it, `put` raises BusFullError."""
 LATE = "they were too old before they could be sent"
 
 _log = logging.getLogger(__name__)
@@ -34,28 +34,28 @@ class OutgoingMessage(NamedTuple):
     reply_to: str = ""
     correlation_id: str = ""
     deadline: float | None = None
-    """The time after which it is discarded [s, monotonic]; None for never."""
+    """The time after which the message is discarded [s, monotonic]; None for never."""
     type: str = ""
     """AMQP's `type` of the message; empty for none."""
     keep: int = 0
-    """The number of the key's newest messages that may wait; 0 for any number."""
+    """The maximum number of the key's newest messages that wait; 0 for any number."""
     must: bool = False
-    """Whether the message is sent until the broker confirms it; a receiver recognises a repetition by its id."""
+    """Whether the message is resent until the broker confirms it; receivers recognise repetitions by its id."""
     origin: MessageOrigin = UNKNOWN_ORIGIN
     headers: Mapping[str, str | int] | None = None
-    """Headers that are sent with it."""
+    """The message's AMQP headers; None for none."""
 
     @property
     def expiration(self) -> str | None:
-        """The remaining time to live in AMQP's form, a text in [ms]; None without a deadline."""
+        """The remaining time to live [ms] as AMQP's text, at least `1`; None without a deadline."""
         return None if self.deadline is None else str(max(1, round(1000 * (self.deadline - time.monotonic()))))
 
 
 class Outbox:
-    """A queue that any thread may fill and empty; messages that must arrive go first.
+    """A queue that any thread can fill and empty; messages that must arrive are sent first.
 
-    When it is full, the oldest messages that may be lost are dropped; for one that must arrive, `put` raises BusError.
-    Dropped and expired messages are counted in `drops`, by key. `came` is called for each new message.
+    When it is full, the oldest messages that may be lost are dropped, and `put` raises BusFullError for a message that
+    must arrive. `drops` counts dropped and expired messages by key. `came` is called after each new message.
     """
 
     def __init__(self, came: Callable[[], None] = lambda: None) -> None:
@@ -68,7 +68,7 @@ class Outbox:
         self._changed = threading.Condition()
 
     def put(self, message: OutgoingMessage) -> None:
-        """Add a message. Raises BusFullError if it must arrive and there is no room."""
+        """Add a message. Raises BusFullError if it must arrive and the queue is full."""
         with self._changed:
             if message.must:
                 self._check_room(message)
@@ -83,7 +83,7 @@ class Outbox:
         self._received()
 
     def take(self, limit: int) -> list[OutgoingMessage]:
-        """Remove and return the next messages that have not expired, at most `limit`."""
+        """Remove and return at most `limit` unexpired messages in sending order; drop expired ones before them."""
         with self._changed:
             now = time.monotonic()
             taken: list[OutgoingMessage] = []
@@ -98,7 +98,7 @@ class Outbox:
             return taken
 
     def put_back(self, messages: Iterable[OutgoingMessage]) -> None:
-        """Put back messages that could not be sent, in front; those replaced by newer ones meanwhile are discarded."""
+        """Put unsent messages back in front; discard those that newer messages have replaced."""
         with self._changed:
             for message in reversed(list(messages)):
                 if message.must:
@@ -121,7 +121,7 @@ class Outbox:
         return len(self._must) + len(self._may)
 
     def _replace(self, message: OutgoingMessage) -> None:
-        """Add the message, and drop the oldest of its key beyond `keep`."""
+        """Add the message, and remove its key's oldest messages beyond `keep`."""
         waiting = self._newest.setdefault(message.key, deque())
         waiting.append(message)
         self._may.append(message.key)

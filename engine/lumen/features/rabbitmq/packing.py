@@ -1,6 +1,6 @@
-"""Images and joints as bytes on a broker: the JPEG itself, or angles as floats; other fields are headers.
+"""Images and joints as bytes on a broker: the JPEG itself, or angles as floats; other fields become headers.
 
-Subscribers receive the same body as in the JSON form.
+Subscribers receive the body that the sender published, as with JSON.
 """
 
 import binascii
@@ -18,13 +18,13 @@ from lumen.language.data_url import JPEG_URL, DataUrl
 from lumen.language.routes import FLOATS_TYPE, JPEG_TYPE
 
 Header = str | int
-"""The types of a header's value: pika writes no floats, so a time is a text."""
+"""The types of a header's value. pika writes no floats, so times are texts."""
 TIME = "time"
 
 _SAME = {"dateModified": "dateCreated", "datePublished": "uploadDate"}
-"""Fields of an image that repeat another field."""
+"""The image fields that only repeat another field, each with that field's name."""
 _LISTS = ("angle", "stiffness", "temperature")
-"""The lists in a body of joints, one number for each joint; the last may be missing."""
+"""The lists in a body of joints, with one number for each joint; a body has at least two of the lists."""
 
 
 class PackedBody(NamedTuple):
@@ -36,9 +36,10 @@ class PackedBody(NamedTuple):
 
 
 def packed(body: Any, content_type: str) -> PackedBody | None:
-    """Return the body in that form; None if the form can't hold it.
+    """Return the body in the form of `content_type`; None if that form can't represent it.
 
-    A JPEG holds an image whose other fields are texts or integers, floats hold joints; each at most MAX_BODY_BYTES.
+    JPEG_TYPE represents an image whose other fields are texts or integers, FLOATS_TYPE joints. The limit of both is
+    MAX_BODY_BYTES.
     """
     if not isinstance(body, Mapping):
         return None
@@ -47,7 +48,7 @@ def packed(body: Any, content_type: str) -> PackedBody | None:
 
 
 def unpacked(data: bytes, content_type: str, headers: Mapping[str, Header]) -> dict[str, Any]:
-    """Return the body from its packed form. Raises ValueError with the reason if it is invalid."""
+    """Return the body from its packed form. Raises ValueError with the reason if that form is invalid."""
     if len(data) > MAX_BODY_BYTES:
         raise ValueError(f"it has more than {MAX_BODY_BYTES:,} bytes")
     if content_type == JPEG_TYPE:

@@ -1,4 +1,4 @@
-"""The event loop of pika's connection. Waiting is apart from handling, so that others may use the connection."""
+"""The event loop of pika's connection. Waiting is separate, so other threads can use the connection meanwhile."""
 
 import heapq
 import time
@@ -18,7 +18,7 @@ _numbers = count()
 
 
 class PollLoop(AbstractSelectorIOLoop):  # type: ignore[misc]  # pika is not typed
-    """The loop that pika requires, turned from outside by `wait`, then `call`."""
+    """The event loop that pika requires; its owner runs each turn with `wait`, then `call`."""
 
     READ, WRITE, ERROR = EVENT_READ, EVENT_WRITE, 0  # a selector reports an error as readable and writable
 
@@ -33,7 +33,10 @@ class PollLoop(AbstractSelectorIOLoop):  # type: ignore[misc]  # pika is not typ
         self.add_handler(self._hearing.fileno(), self._heard, EVENT_READ)
 
     def wait(self, seconds: float) -> Events:
-        """Wait at most `seconds` for events, not at all if a callback is pending; return them, unhandled."""
+        """Wait for events until the next timer, at most `seconds`; return the unhandled events.
+
+        Don't wait if a callback is pending.
+        """
         if self._callbacks:
             seconds = 0.0
         elif self._timers:
@@ -41,7 +44,7 @@ class PollLoop(AbstractSelectorIOLoop):  # type: ignore[misc]  # pika is not typ
         return self._selector.select(seconds)
 
     def call(self, events: Events) -> None:
-        """Handle these events, then run callbacks of other threads and due timers."""
+        """Handle these events, then run pending callbacks and due timers."""
         for key, mask in events:
             if handler := self._handlers.get(key.fd):
                 handler(key.fd, mask)
@@ -55,7 +58,7 @@ class PollLoop(AbstractSelectorIOLoop):  # type: ignore[misc]  # pika is not typ
     def add_callback(self, callback: Callable[[], object]) -> None:
         """Run `callback` in the next `call`, and make `wait` return. Any thread may call this."""
         self._callbacks.append(callback)
-        with suppress(OSError):  # a full socket wakes `wait` already; a closed one need not
+        with suppress(OSError):  # a full socket already wakes `wait`; a closed one has no waiter
             self._waking.send(b"x")
 
     def call_later(self, delay: float, callback: Callable[[], object]) -> Any:
@@ -65,18 +68,18 @@ class PollLoop(AbstractSelectorIOLoop):  # type: ignore[misc]  # pika is not typ
         return timer
 
     def remove_timeout(self, timeout_handle: list[Callable[[], object]]) -> None:
-        """Cancel a timer, so that it wakes no `wait`."""
+        """Cancel a timer; it no longer shortens a `wait`."""
         timeout_handle.clear()
         while self._timers and not self._timers[0][2]:
             heapq.heappop(self._timers)
 
     def add_handler(self, fd: int, handler: Callable[[int, int], None], events: int) -> None:
-        """Call the handler when one of `events` happens on the file descriptor."""
+        """Call the handler when any of `events` occurs on the file descriptor."""
         self._handlers[fd] = handler
         self._selector.register(fd, events)
 
     def update_handler(self, fd: int, events: int) -> None:
-        """Change the events that are watched on a file descriptor."""
+        """Change the events to watch on a file descriptor."""
         self._selector.modify(fd, events)
 
     def remove_handler(self, fd: int) -> None:

@@ -1,6 +1,6 @@
 """pika's asynchronous connection, driven by the thread that owns it: our callbacks run only inside `turn`.
 
-Only while that thread waits may others use the connection (`lend`), without waking it.
+While that thread waits, other threads can use the connection with `lend`, without waking it.
 """
 
 import threading
@@ -24,14 +24,14 @@ from lumen.features.rabbitmq.poll_loop import PollLoop
 from lumen.features.rabbitmq.wire import MessageReader, WireConnection
 
 STALL_TIME = 0.5
-"""If a turn takes longer than planned by more than this, the process was suspended [s]."""
+"""The delay of a turn, compared with its planned time, above which the process counts as suspended [s]."""
 
 
 class TurnClock:
-    """Follows the turns of a connection, to estimate when messages arrived.
+    """Estimates when messages arrived, from the turns of a connection.
 
-    A process that was suspended during one turn may read the messages of that time only in the next turn, so those of
-    both turns count as arrived at the beginning of the first.
+    A process that was suspended during one turn may read the messages of that time only in the next turn. The messages
+    of both turns therefore count as arrived when the first turn began.
     """
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
@@ -48,7 +48,7 @@ class TurnClock:
     def arrival(self) -> float:
         """Return the earliest time at which data received now can have arrived [s, by `clock`].
 
-        It is the present time, unless the process was suspended.
+        This is the present time unless the process was suspended.
         """
         now = self._clock()
         if self._stood_since is not None:
@@ -62,9 +62,8 @@ class TurnClock:
 class PolledConnection:
     """An open connection and its channel. Raises pika's exceptions if it can't be opened or is lost.
 
-    Unlike `BlockingConnection` it waits neither for each message to be sent nor for each confirmation. `blocked` names
-    the resource that the broker lacks while it accepts nothing, and is empty otherwise; `told` is called with each
-    change.
+    Unlike `BlockingConnection`, it does not wait until each message is sent or confirmed. `blocked` names the resource
+    that the broker lacks while it accepts no messages, and is empty otherwise. `told` is called with each new value.
     """
 
     def __init__(self, parameters: Any, told: Callable[[str], None] = lambda blocked: None) -> None:
@@ -91,14 +90,14 @@ class PolledConnection:
         return self._connection.server_properties or {}
 
     def open_channel(self) -> Any:
-        """Open a channel in place of the last one, and return it."""
+        """Open a channel that replaces the last one, and return it."""
         self.channel = self._open_channel()
         self.channel.add_on_close_callback(lambda _, reason: self._closed(reason))
         return self.channel
 
     @contextmanager
     def asking(self) -> Iterator[AskedChannel]:
-        """Open a separate channel for requests; a refusal by the broker closes only that one."""
+        """Open a separate channel for requests; the broker's refusal closes only that channel."""
         channel = AskedChannel(self, self._open_channel())
         try:
             yield channel
@@ -112,18 +111,18 @@ class PolledConnection:
         self.until(lambda: answers)
 
     def publish(self, exchange: str, key: str, properties: bytes, body: bytes, *, mandatory: bool) -> None:
-        """Send a message with the next turn.
+        """Buffer a message; the buffer is sent by `turn`, after `lend`, and when it is full.
 
-        Raises ValueError if AMQP can't carry it, ChannelWrongStateError if the channel is closed.
+        Raises ValueError if AMQP can't represent the message, ChannelWrongStateError if the channel is closed.
         """
         if not self.channel.is_open:
             raise ChannelWrongStateError("the channel is closed")
         self._connection.send(self.channel.channel_number, exchange, key, properties, body, mandatory=mandatory)
 
     def confirm(self, has: Callable[[int, bool], None], lacks: Callable[[int, bool], None]) -> None:
-        """Request confirmations of messages, which the broker answers with `has` or `lacks`.
+        """Request confirmations: the broker's acknowledgement calls `has`, its rejection `lacks`.
 
-        Both are called with a message's number, and True if the answer includes all messages before it.
+        Both receive a message's number, and whether the answer also applies to all earlier messages.
         """
 
         def refused(frame: Any) -> None:
@@ -133,7 +132,7 @@ class PolledConnection:
         self.request(self.channel.confirm_delivery, refused)
 
     def consume(self, queue: str, reader: MessageReader, arguments: Mapping[str, Any] | None = None) -> str:
-        """Start to consume a queue, wait for the broker's answer, and return the tag with which to `cancel`."""
+        """Start consuming a queue, wait for the broker's answer, and return the consumer's tag for `cancel`."""
         known: list[Any] = []
         tag: str = self.channel.basic_consume(queue, lambda *_: None, arguments=arguments, callback=known.append)
         self._connection.readers[tag.encode()] = reader
@@ -141,14 +140,14 @@ class PolledConnection:
         return tag
 
     def cancel(self, tag: str) -> None:
-        """Stop consuming; messages that arrive in the meantime return to the queue."""
+        """Stop consuming; messages that arrive meanwhile return to the queue. Ignore unknown tags."""
         if self._connection.readers.pop(tag.encode(), None):
             self.request(self.channel.basic_cancel, tag)
 
     def until(self, done: Callable[[], object]) -> None:
-        """Turn until `done` is true.
+        """Run turns until `done` is true.
 
-        Raises TimeoutError after BROKER_TIMEOUT, and ConnectionBlockedTimeout at once if the broker accepts nothing.
+        Raises TimeoutError after BROKER_TIMEOUT, and ConnectionBlockedTimeout while the broker accepts no messages.
         """
         deadline = time.monotonic() + BROKER_TIMEOUT
         while not done():
@@ -159,9 +158,9 @@ class PolledConnection:
             self.turn(0.5)
 
     def turn(self, seconds: float, pause: float = 0.0) -> None:
-        """Wait for events for at most `seconds`, or until `wake` is called; then process those that came.
+        """Wait for events for at most `seconds` or until `wake` is called, then process them.
 
-        First wait `pause` [s] for `wake` alone; events of that time are then processed at once.
+        First wait up to `pause` [s] for `wake` only, while events accumulate. Raises the error of a failed connection.
         """
         self.clock.begin(pause + seconds)
         self._connection.flush()
@@ -179,7 +178,7 @@ class PolledConnection:
             raise self._error
 
     def lend(self, work: Callable[[], bool]) -> bool:
-        """Run `work` while the connection's owner waits; return its result, False if the owner does not wait.
+        """Run `work` if the connection's owner is waiting, and return its result; return False if the owner is busy.
 
         Any thread may call this.
         """
@@ -197,7 +196,7 @@ class PolledConnection:
         self._loop.add_callback(lambda: None)
 
     def later(self, work: Callable[[], None]) -> None:
-        """Let the owning thread run `work` between two turns; it may send requests to the broker.
+        """Let the owning thread run `work` between two turns; `work` may send requests to the broker.
 
         Any thread may call this.
         """
@@ -210,7 +209,7 @@ class PolledConnection:
             self._works.popleft()()
 
     def call_later(self, seconds: float, work: Callable[[], None]) -> None:
-        """Run `work` within a turn after `seconds`; it must not send requests to the broker."""
+        """Run `work` within a turn after `seconds`; `work` must not send requests to the broker."""
         self._loop.call_later(seconds, work)
 
     def pause(self, seconds: float) -> None:
@@ -220,7 +219,7 @@ class PolledConnection:
         self.until(lambda: rung)
 
     def fail(self, error: BaseException) -> None:
-        """Make the turn raise this error. Only callbacks may call this."""
+        """Make the current turn raise this error. Only callbacks may call this."""
         self._error = error
 
     def close(self) -> None:

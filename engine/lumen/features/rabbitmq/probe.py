@@ -1,4 +1,4 @@
-"""Tests what a broker allows, without effects on its other users."""
+"""Tests a broker's permissions and state without affecting its other users."""
 
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -23,7 +23,7 @@ from lumen.features.rabbitmq.queues import (
 from lumen.language.routes import Route
 
 FORGED_USER = "lumen doctor"
-"""The user that a test message pretends to be from."""
+"""The false user name in a test message."""
 ACCESS_REFUSED = 403
 """AMQP's code for a missing permission."""
 
@@ -45,7 +45,7 @@ class BrokerProbe:
             raise
 
     def has_queue(self, name: str) -> bool:
-        """Return whether there is a queue or a stream of that name."""
+        """Return whether the broker has a queue or stream of that name."""
         try:
             with self._asking() as channel:
                 channel.queue_declare(name, passive=True)
@@ -54,7 +54,7 @@ class BrokerProbe:
         return True
 
     def reading(self, key: str) -> str:
-        """Return why this user may not receive messages under this key; empty if it may."""
+        """Return the broker's reason why this user can't receive messages under this key; empty if permitted."""
         try:
             with self._asking() as channel:
                 queue = channel.queue_declare("", exclusive=True).method.queue
@@ -65,9 +65,9 @@ class BrokerProbe:
         return ""
 
     def writing(self, key: str) -> str:
-        """Return why this user may not send under this key; empty if it may.
+        """Return the broker's reason why this user can't send messages under this key; empty if permitted.
 
-        The message has the name of another user. The broker refuses that only after it has checked the permission to
+        The test message contains a false user name. The broker refuses that name only after checking the permission to
         send, so the message reaches no receiver. Raises BusUnreachableError if the broker accepts the message.
         """
         properties = pika.BasicProperties(user_id=FORGED_USER)
@@ -80,7 +80,7 @@ class BrokerProbe:
         raise BusUnreachableError(f"the broker at {self.address} accepted a message in the name of `{FORGED_USER}`")
 
     def taking(self) -> str:
-        """Send a message to check the broker; return why it accepts none from any sender, or an empty text."""
+        """Send a test message; return why the broker accepts no sender's messages, or an empty string."""
         try:
             self.writing("")
         except BusUnreachableError as error:
@@ -90,7 +90,7 @@ class BrokerProbe:
     def served(self, key: str, route: Route) -> QueueStatus:
         """Return the numbers of messages and consumers in the queue of a route whose messages must arrive.
 
-        Both are None if there is no such queue.
+        Both are None if the broker has no such queue.
         """
         try:
             with self._asking() as channel:
@@ -100,7 +100,7 @@ class BrokerProbe:
         return QueueStatus(found.message_count, found.consumer_count)
 
     def misdeclared(self) -> Iterator[str]:
-        """Yield the faults of existing side queues and their exchanges; missing ones are not declared."""
+        """Yield the faults of existing side queues and exchanges, without declaring missing ones."""
         for name, limits in SIDE_QUEUE_LIMITS.items():
             for fault in (self._misdeclared(name, limits, exchange) for exchange in (True, False)):
                 if fault:
@@ -125,7 +125,7 @@ class BrokerProbe:
 
     @contextmanager
     def _asking(self) -> Iterator[AskedChannel]:
-        """Open a separate channel for requests. Raises ChannelClosedByBroker if the broker refuses, else BusError."""
+        """Open a separate channel for requests. Raises ChannelClosedByBroker for a refusal, else BusError."""
         with self._explained(), self._connection.asking() as channel:
             try:
                 yield channel
@@ -133,7 +133,7 @@ class BrokerProbe:
                 self._check_taken()
 
     def _check_taken(self) -> None:
-        """Raise BusUnreachableError if the broker lacks a resource: it may report that and still answer."""
+        """Raise BusUnreachableError if the broker lacks a resource; a broker can report this and still answer."""
         if what := self._connection.blocked:
             raise BusUnreachableError(self.address.short_of(what))
 

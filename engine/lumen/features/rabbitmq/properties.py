@@ -1,8 +1,8 @@
-"""Reads AMQP's properties of a message so that no content of theirs can end the connection.
+"""Reads a message's AMQP properties without letting invalid ones end the connection.
 
-pika decodes all headers, however deep their tables or odd their dates, and raises while it reads frames: a single
-message ends the connection. Here only two headers are decoded: a text called `cause`, if only texts come before it, and
-a message's offset in a stream. All others are skipped. Properties that are not valid text are left out, and named.
+pika decodes all headers, including deep tables and invalid dates, and raises while it reads frames: a single message
+can end the connection. `read_properties` decodes only two headers: the text `cause`, if only texts come before it, and
+the message's offset in a stream. It leaves out texts that are not valid Unicode, and lists their names.
 """
 
 from collections.abc import Callable, Mapping
@@ -16,7 +16,7 @@ from pika import frame, spec
 from pika.data import encode_table
 
 _HEADER_START = spec.FRAME_HEADER_SIZE + 12
-"""The index of the properties in a header frame: after the class, the weight and the length of the body."""
+"""The index of the properties in a header frame: after the class, the weight and the body's length."""
 CAUSE_HEADER = "cause"
 """The header with the place in a behaviour that caused a message."""
 OFFSET_HEADER = "x-stream-offset"
@@ -27,7 +27,7 @@ _FIELDS = (
     ("message_id", "text"), ("timestamp", "time"), ("type", "text"), ("user_id", "text"), ("app_id", "text"),
     ("cluster_id", "text"),
 )  # fmt: skip
-"""AMQP 0-9-1's properties of a message in their order, from the highest bit of the flags."""
+"""AMQP 0-9-1's message properties in the order of their flags, from the highest bit."""
 
 
 class MessageProperties(NamedTuple):
@@ -42,18 +42,18 @@ class MessageProperties(NamedTuple):
     app_id: str = ""
     delivery_mode: int = 0
     headers: str = ""
-    """The text of `CAUSE_HEADER`."""
+    """The text of `CAUSE_HEADER`; empty if missing."""
     offset: int = -1
-    """The position in a stream; -1 outside of one."""
+    """The position in a RabbitMQ stream; -1 for other messages."""
     table: bytes = b""
-    """All headers, undecoded: use `header_fields` to read more of them."""
+    """All headers, undecoded; `header_fields` reads them."""
     unreadable: tuple[str, ...] = ()
-    """The names of properties that could not be read."""
+    """The names of unreadable properties; `the rest` for truncated data."""
     content_encoding: str = ""
 
 
 class TolerantConnection(pika.SelectConnection):  # type: ignore[misc]  # pika is not typed
-    """pika's connection, which reads the properties of messages with `read_properties`."""
+    """pika's connection, but with `read_properties` for the properties of messages."""
 
     def _read_frame(self) -> tuple[int, Any]:
         data = self._frame_buffer
@@ -68,7 +68,7 @@ class TolerantConnection(pika.SelectConnection):  # type: ignore[misc]  # pika i
 
 
 def read_properties(data: bytes) -> MessageProperties:
-    """Return the properties in these bytes of a header frame; `unreadable` names those that can't be read."""
+    """Return the properties in these bytes of a header frame; `unreadable` lists invalid properties."""
     found: dict[str, Any] = {}
     unreadable: list[str] = []
     try:
@@ -89,7 +89,7 @@ def read_properties(data: bytes) -> MessageProperties:
 
 
 def write_properties(said: Mapping[str, Any]) -> bytes:
-    """Return these properties, named as in AMQP, as bytes; empty ones are left out.
+    """Encode these properties, whose names are those of AMQP; leave out empty ones.
 
     Raises ValueError if a text is longer than 255 bytes or not valid Unicode.
     """
@@ -103,13 +103,13 @@ def write_properties(said: Mapping[str, Any]) -> bytes:
 
 
 def short_text(text: str) -> bytes:
-    """Return AMQP's form of a text of at most 255 bytes. Raises ValueError if it is longer."""
+    """Encode a text of at most 255 bytes as AMQP's short string. Raises ValueError if it is longer."""
     said = text.encode()
     return bytes((len(said),)) + said
 
 
 def _flags(data: bytes) -> tuple[int, int]:
-    """Return the first word of the flags and the end of the last: the lowest bit means that another word follows."""
+    """Return the first word of the flags and the end of the last word; a set lowest bit means that a word follows."""
     at, word = 2, unpack_from(">H", data)[0]
     first = word
     while word & 1:
@@ -134,7 +134,7 @@ def _table(data: bytes, at: int) -> tuple[str | None, int]:
 def _cause(table: bytes) -> str:
     """Return the text `cause` of a table if only texts come before it, else an empty string.
 
-    Each entry is a name, an `S` and a text.
+    Each entry consists of a name, an `S` and a text.
     """
     at = 0
     while at < len(table):
@@ -149,9 +149,9 @@ def _cause(table: bytes) -> str:
 
 
 def _offset(table: bytes) -> int:
-    """Return the value of `OFFSET_HEADER` in a table; -1 if it is missing.
+    """Return the value of `OFFSET_HEADER` in a table; -1 if it is missing or can't be read.
 
-    Each entry is a name, a type letter and a value.
+    Each entry consists of a name, a type letter and a value.
     """
     name = OFFSET_HEADER.encode()
     at = 0
@@ -168,7 +168,7 @@ def _offset(table: bytes) -> int:
 
 
 def header_fields(table: bytes) -> dict[str, str | int]:
-    """Return the texts, integers and booleans among the headers, up to the first that can't be read."""
+    """Return the texts, integers and booleans among the headers, up to the first invalid header."""
     found: dict[str, str | int] = {}
     at = 0
     with suppress(struct_error, IndexError, UnicodeDecodeError):
@@ -208,11 +208,11 @@ _LONG = frozenset((b"S", b"A", b"F", b"x"))
 _SIZES = {
     b"t": 1, b"b": 1, b"B": 1, b"s": 2, b"u": 2, b"I": 4, b"i": 4, b"f": 4, b"D": 5, b"l": 8, b"d": 8, b"T": 8, b"V": 0,
 }  # fmt: skip
-"""The sizes of the other types' values [bytes], as RabbitMQ writes them."""
+"""The type letters of values with a fixed size, and that size as RabbitMQ writes it [bytes]."""
 _NUMBERS = {
     b"t": ">?", b"b": ">b", b"B": ">B", b"s": ">h", b"u": ">H", b"I": ">i", b"i": ">I", b"l": ">q",
 }  # fmt: skip
-"""The formats of those values that are integers or booleans."""
+"""The `struct` formats of integers and booleans, by type letter."""
 _READERS: dict[str, Any] = {"text": _text, "table": _table, "byte": _byte, "time": _time}
 _WRITERS: dict[str, Callable[[Any], bytes]] = {
     "text": short_text, "table": _table_of, "byte": Struct("B").pack, "time": Struct(">Q").pack,

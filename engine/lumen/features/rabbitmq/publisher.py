@@ -1,4 +1,4 @@
-"""The connection that sends messages and tracks which of them the broker has confirmed."""
+"""The sending connection, which tracks the broker's confirmations."""
 
 import logging
 import time
@@ -27,42 +27,43 @@ from lumen.language.routes import FLOATS_TYPE, JPEG_TYPE
 from lumen.upkeep.drops import DropLog
 
 MAX_UNCONFIRMED_MESSAGES = 1_000
-"""The most messages that are sent but not confirmed yet; more wait in the outbox."""
+"""The maximum number of sent, unconfirmed messages; further messages wait in the outbox."""
 MAX_BY_GUEST = 8
-"""The most waiting messages, for example after an outage, that a thread sends along when it publishes one."""
+"""The maximum number of waiting messages that a publishing thread sends, for example after an outage."""
 MAX_UNCONFIRMED_BYTES = 4 * 1024 * 1024
-"""The maximum total size of the bodies of messages that are sent but not confirmed yet [bytes]."""
+"""The total body size of sent, unconfirmed messages above which no more are sent [bytes]."""
 CONFIRM_TIME = 0.01
 """The time for which the broker's confirmations accumulate while more messages are sent [s]."""
 IDLE_TIME = 0.5
-"""The time that the connection waits for events if there is nothing to send [s]."""
+"""The longest wait for events in one turn of the connection [s]."""
 MAX_WARNED_KEYS = 1_000
-"""The most keys without a receiver for which a warning is logged."""
+"""The maximum number of keys without a receiver for which a warning is logged."""
 PROBE_PERIOD = 1.0
-"""The time between two attempts to find out whether a key without a receiver has one now [s]."""
+"""The time for which a key counts as having no receiver, after a message found none [s]."""
 PERSISTENT_DELIVERY = 2
-"""AMQP's delivery mode of a message that a broker writes to its disk."""
+"""AMQP's delivery mode for messages that a broker writes to disk."""
 
 _log = logging.getLogger(__name__)
 
 
 class _Sent(NamedTuple):
-    """A message that was sent, until it is confirmed."""
+    """A sent message that the broker has not confirmed yet."""
 
     size: int
     """The size of its body [bytes]."""
     again: OutgoingMessage | None
-    """The message to send again if the connection is lost; None if it may be lost."""
+    """The message to resend after a refusal or a lost connection; None if the message may be lost."""
 
 
 class Publisher(BrokerConnection):
-    """Sends the messages of the outbox; while the broker is away, they wait for it.
+    """Sends the messages of the outbox; while the broker is away, messages wait there.
 
     The thread that publishes a message also sends it; the connection's own thread receives confirmations and sends
-    messages that had to wait. At most `MAX_UNCONFIRMED_MESSAGES` are sent without confirmation. When the connection is
-    lost, those that must arrive are sent again first. Messages without a receiver are logged with the nearest of the
+    messages that had to wait. At most `MAX_UNCONFIRMED_MESSAGES` are sent without confirmation. After a lost connection,
+    unconfirmed messages that must arrive are resent first. Keys without a receiver are logged with the nearest of the
     `known` keys. `journals` are the queues that keep outgoing messages until a module reads them. `returned` is called
-    with each key whose message has no receiver; without it, the broker returns only messages that must arrive.
+    with the key of each message without a receiver. If it is None, the broker returns only messages that must arrive
+    and messages under keys passed to `heard`.
     """
 
     def __init__(self, address: BrokerAddress, name: str, outage: OutageLog) -> None:
@@ -98,15 +99,15 @@ class Publisher(BrokerConnection):
 
     @property
     def has_side_queues(self) -> bool:
-        """Whether the broker let us declare the side queues for unusable messages."""
+        """Whether the side queues for unusable messages are declared on the broker."""
         return SIDE_QUEUES in self._declared
 
     def serve(self) -> bool:
-        """Send waiting messages and process the broker's.
+        """Send waiting messages, unless the broker is blocked, and process the broker's answers.
 
-        Return False once everything is sent and the end is requested.
+        Return False if the end is requested and all messages are confirmed, or the broker is blocked.
         """
-        if self.connection.blocked:  # in the outbox a message's time to live counts; sent now, it would be used late
+        if self.connection.blocked:  # time to live counts in the outbox; messages sent now would arrive too late
             self.connection.turn(IDLE_TIME)
             self.outbox.drops.tell()
             return not self.ending.is_set()
@@ -123,21 +124,21 @@ class Publisher(BrokerConnection):
         return bool(self.outbox or self._window) or not self.ending.is_set()
 
     def disconnect(self, connection: PolledConnection) -> None:
-        """Put unconfirmed messages that must arrive back into the outbox, and close the connection."""
+        """Return unconfirmed messages that must arrive to the outbox, and close the connection."""
         self._prepared = None
         lost, self._window, self._bytes = self._window, {}, 0
         self.outbox.put_back([sent.again for sent in lost.values() if sent.again])
         connection.close()
 
     def end(self, timeout: float) -> bool:
-        """Send the rest and end; return whether that was done within `timeout` [s]."""
+        """Send the remaining messages and end; return whether the thread ended within `timeout` [s]."""
         self.ending.set()
         if connection := self.connection:
             connection.wake()
         return self.join(timeout)
 
     def _send_now(self) -> None:
-        """Send in the caller's thread; if the connection is in use, let its own thread send."""
+        """Send waiting messages in the caller's thread, or in the connection's own thread if that is busy."""
         connection = self.connection
         if connection and not connection.lend(self._send_as_guest):
             connection.wake()
@@ -187,7 +188,7 @@ class Publisher(BrokerConnection):
             self.connection.publish(message.exchange, message.key, properties, message.body, mandatory=wanted)
         except (AMQPChannelError, AMQPConnectionError, OSError):
             raise
-        except Exception as error:  # AMQP can't carry it; sent again, it would end the connection again
+        except Exception as error:  # AMQP can't carry it; a second attempt would fail again
             self.unsendable.add(message.key, f"AMQP cannot carry it: {error!r}")
             return
         self._number += 1
@@ -195,7 +196,7 @@ class Publisher(BrokerConnection):
         self._bytes += len(message.body)
 
     def _confirmed(self, number: int, several: bool) -> None:
-        """Record that the broker has this message, and with `several` all before it."""
+        """Record that the broker has this message, and if `several`, all earlier messages."""
         self._settled(number, several)
 
     def _nacked(self, number: int, several: bool) -> None:
@@ -204,7 +205,7 @@ class Publisher(BrokerConnection):
         self.outbox.put_back([sent.again for sent in messages if sent.again])
 
     def _settled(self, number: int, several: bool) -> list[_Sent]:
-        """Remove the messages that the broker has answered for from the window, and return them."""
+        """Remove from the window the messages that the broker has confirmed or rejected, and return them."""
         first = next(iter(self._window), 0) if several else number
         messages = [sent for n in range(first, number + 1) if (sent := self._window.pop(n, None))]
         self._bytes -= sum(sent.size for sent in messages)
@@ -213,7 +214,7 @@ class Publisher(BrokerConnection):
     def _returned(self, _: Any, method: Any, properties: Any, body: bytes) -> None:
         """Handle a message without a receiver.
 
-        One that must arrive goes to the side queue, so that operators can find it.
+        A message that must arrive is sent to the side queue, where operators can find it.
         """
         key = method.routing_key
         if method.exchange == UNROUTED:
@@ -229,9 +230,9 @@ class Publisher(BrokerConnection):
             self.outbox.put(OutgoingMessage(UNROUTED, key, body, properties.content_type or "", headers=headers))
 
     def heard(self, key: str) -> bool:
-        """Return whether a process receives messages under this key, as seen within the last PROBE_PERIOD.
+        """Return False if a message under this key found no receiver within the last PROBE_PERIOD, else True.
 
-        Return True if that is unknown: the next message then finds out.
+        After the first call, the broker reports each message under this key that has no receiver.
         """
         self._probed.add(key)
         return time.monotonic() - self._missed.get(key, -PROBE_PERIOD) >= PROBE_PERIOD
@@ -241,13 +242,13 @@ class Publisher(BrokerConnection):
             self._missed[key] = time.monotonic()
 
     def unrouted(self, key: str) -> None:
-        """Record that a message under this key had no receiver; log it if no route has the key."""
+        """Record that a message under this key had no receiver; log a warning if no route has the key."""
         self._miss(key)
         if key not in self.known:
             self.warn_once(key)
 
     def warn_once(self, key: str) -> None:
-        """Log, once per key, that no process receives messages under it."""
+        """Log once per key, for at most MAX_WARNED_KEYS keys, that no process receives its messages."""
         if key in self._warned or len(self._warned) >= MAX_WARNED_KEYS:
             return
         self._warned.add(key)
@@ -256,9 +257,9 @@ class Publisher(BrokerConnection):
         _log.warning("no process receives messages on `%s`%s", key, hint if "mean" in hint else "")
 
     def _declare(self, name: str, work: Callable[[AskedChannel], None]) -> None:
-        """Declare something on the broker once.
+        """Run the declaration `work`, called `name` in logs, once per connection.
 
-        A refusal, as for a user with few permissions, is logged and not tried again on this connection.
+        A refusal, for example because of a missing permission, is logged and not retried on this connection.
         """
         if name in self._declared or name in self._refused:
             return

@@ -1,9 +1,9 @@
-"""The queues that Lumen declares on a broker: one for every way of carrying messages, and two for unusable ones.
+"""The queues that Lumen declares on a broker: one type for each kind of route, and two side queues.
 
-Telemetry has a queue that vanishes with its reader and keeps the newest messages. Commands have one that survives a
-reader's absence as long as a command is valid; expired ones go to `lumen.dead`. An incoming journal has a quorum queue,
-an outgoing one a stream, which any number of modules may read. All of them are bounded: what does not fit is refused to
-the sender, or displaces the oldest if it may be lost.
+Telemetry uses a queue that is deleted with its reader and keeps the newest messages. Commands use a queue that outlasts
+its reader's absence; expired commands move to `lumen.dead`. An incoming journal uses a quorum queue. An outgoing journal
+uses a stream, which any number of modules can read. All queues are bounded: a full queue refuses messages that must
+arrive, and drops its oldest messages if they may be lost.
 """
 
 import hashlib
@@ -19,34 +19,34 @@ EXCHANGE = "amq.topic"
 DEAD_LETTERS = "lumen.dead"
 """The queue of unusable messages, with the reason in their headers."""
 UNROUTED = "lumen.nowhere"
-"""The queue of messages without a receiver; the alternate exchange of `amq.topic` if a policy sets it."""
+"""The queue of messages without a receiver; its exchange is the alternate of `amq.topic` if a policy sets it."""
 SIDE_QUEUES = f"{DEAD_LETTERS} and {UNROUTED}"
 
 MAX_LENGTH_WITHOUT_ROUTE = 20_000
-"""The maximum length of a queue for a key without a route; the oldest messages are dropped beyond it."""
+"""The maximum number of messages in the queue of a key without a route; beyond it, the oldest are dropped."""
 MAX_LENGTH_TELEMETRY = 1_000
-"""The maximum length of a telemetry queue whose route has no `keep`; the oldest messages are dropped beyond it."""
+"""The maximum number of messages in a telemetry queue without `keep`; beyond it, the oldest are dropped."""
 MAX_LENGTH_COMMANDS = 100_000
-"""The maximum length of a queue of commands; beyond it, the broker refuses further ones."""
+"""The maximum number of messages in a queue of commands; beyond it, the broker refuses further commands."""
 MAX_JOURNAL_BYTES = 10**9
 """The maximum size of a journal's queue or stream [bytes]."""
 MAX_SIDE_QUEUE_BYTES = 10**8
 """The maximum size of `lumen.dead` and of `lumen.nowhere`, each [bytes]."""
 MAX_QUEUE_NAME_BYTES = 255
-"""The longest short string of AMQP; a longer name is replaced by its hash."""
+"""The maximum length of AMQP's short strings [bytes]; a longer name is replaced by its hash."""
 HOUR = 60 * 60 * 1000
-"""One hour in RabbitMQ's unit [ms]."""
+"""One hour in RabbitMQ's unit of time [ms]."""
 UNUSED_EXPIRY = 10 * 60 * 1000
-"""The time without a reader after which a queue of commands is deleted [ms]."""
+"""The time without a reader after which a queue of commands with a lifetime is deleted [ms]."""
 QUORUM_SETTLE_TIME = 1.0
 """The time for which a new quorum queue stays unbound [s].
 
-RabbitMQ saves which log belongs to the queue half a second after the declaration; if it is killed before, the queue's
+RabbitMQ saves the queue's assignment to a log half a second after the declaration. If it is killed earlier, the queue's
 content is lost (docs/decisions).
 """
 
 SIDE_EXCHANGE = "fanout"
-"""The type of the side queues' exchanges: each message reaches the queue, whatever its key."""
+"""The type of the side queues' exchanges: each message reaches the queue, regardless of its key."""
 SIDE_QUEUE_LIMITS: Mapping[str, Mapping[str, Any]] = {
     name: {
         "x-max-length": MAX_LENGTH_TELEMETRY,
@@ -65,7 +65,7 @@ _OTHER_ARGUMENT = re.compile(
 
 @dataclass(frozen=True)
 class Queue:
-    """A queue on the broker; one without a name belongs to this connection and ends with it."""
+    """A queue on the broker; a queue without a name belongs to one connection and is deleted with it."""
 
     key: str
     name: str = ""
@@ -78,13 +78,13 @@ class Queue:
         return self.arguments.get("x-queue-type") == "quorum"
 
     def declare(self, channel: AskedChannel) -> None:
-        """Declare a queue with a name, and bind it to its key."""
+        """Declare this named queue as durable, and bind it to its key."""
         channel.queue_declare(self.name, durable=True, arguments=self.arguments)
         channel.queue_bind(self.name, EXCHANGE, self.key)
 
 
 def queue_of(key: str, route: Route | None, number: int = 0, exchange: str = EXCHANGE) -> Queue:
-    """Return the queue for messages that arrive under a key; `number` distinguishes several of the same key."""
+    """Return the queue for messages that arrive under a key; `number` distinguishes several queues for one key."""
     if route is None or not route.must_arrive:
         newest = MAX_LENGTH_WITHOUT_ROUTE if route is None else route.keep or MAX_LENGTH_TELEMETRY
         return Queue(
@@ -109,16 +109,16 @@ def queue_of(key: str, route: Route | None, number: int = 0, exchange: str = EXC
 
 
 def journal_of(key: str) -> Queue:
-    """Return the stream of an outgoing journal, of at most a month and a gigabyte.
+    """Return the stream of an outgoing journal, which keeps at most 30 days and MAX_JOURNAL_BYTES.
 
-    Each module continues to read after the last message that it has read.
+    Each module resumes after the last message that it has read.
     """
     arguments = {"x-queue-type": "stream", "x-max-age": "30D", "x-max-length-bytes": MAX_JOURNAL_BYTES}
     return Queue(key, _name(f"lumen.journal.{key}"), arguments=arguments)
 
 
 def declare_side_queues(channel: AskedChannel) -> None:
-    """Declare the queues for unusable messages and those without a receiver: bounded, the oldest are dropped."""
+    """Declare the bounded queues for unusable messages and for messages without a receiver."""
     for name, limits in SIDE_QUEUE_LIMITS.items():
         channel.exchange_declare(name, SIDE_EXCHANGE, durable=True)
         channel.queue_declare(name, durable=True, arguments=limits)
@@ -128,7 +128,7 @@ def declare_side_queues(channel: AskedChannel) -> None:
 def declared_otherwise(reply: str) -> str:
     """Describe how an existing exchange or queue differs from the declaration, and the remedy.
 
-    `reply` is the broker's answer to Lumen's declaration.
+    `reply` is the broker's answer to Lumen's declaration. An answer in an unknown form is returned unchanged.
     """
     found = _OTHER_ARGUMENT.search(reply)
     if not found:

@@ -1,4 +1,4 @@
-"""Reads a RabbitMQ stream from where the last reading ended, so that messages of an absence are not missed."""
+"""Reads a RabbitMQ stream from a given offset; a reader that was away misses no messages."""
 
 from collections import deque
 from contextlib import closing
@@ -14,15 +14,15 @@ from lumen.features.rabbitmq.probe import BrokerProbe
 from lumen.features.rabbitmq.properties import MessageProperties
 
 PREFETCH = 200
-"""The most messages that the broker sends ahead: a stream requires a limit."""
+"""The maximum number of unacknowledged messages; a stream requires such a limit."""
 MOST_READ = 2000
-"""The most messages that may wait for `take`; beyond it no more are requested."""
+"""The number of messages waiting for `take` at which no more are requested."""
 TURN = 0.2
-"""The time that the connection's thread waits for events before it checks whether to end [s]."""
+"""The longest wait for events before the connection's thread checks whether to end [s]."""
 
 
 class StreamReader(BrokerConnection):
-    """Reads the stream `name` from the offset `first`, on a thread of its own, across outages of the broker."""
+    """Reads the stream `name` from the offset `first`, on a separate thread, across outages of the broker."""
 
     def __init__(self, url: str, name: str, first: int = 0) -> None:
         address = BrokerAddress(url)
@@ -36,18 +36,18 @@ class StreamReader(BrokerConnection):
         return [self._read.popleft() for _ in range(len(self._read))]
 
     def close(self, timeout: float = 5.0) -> None:
-        """End. Entries that were not taken are read again by a reader that begins at the first of them."""
+        """End within `timeout` [s]. Entries not taken yet are not lost: a new reader can begin at their offset."""
         self.ending.set()
         self.join(timeout)
 
     def begin(self) -> None:
-        """Start to read at the next offset."""
+        """Start to read at the offset after the last entry."""
         self.channel.basic_qos(prefetch_count=PREFETCH)
         self.channel.add_on_cancel_callback(self._cancelled)
         self.connection.consume(self._stream, self._received, arguments={"x-stream-offset": self._next})
 
     def serve(self) -> bool:
-        """Process events for a turn; return False once the end is requested."""
+        """Process events for a turn; return False after `close` is called."""
         if self._last and len(self._read) < MOST_READ:
             self.channel.basic_ack(self._last, multiple=True)
             self._last = 0
@@ -57,7 +57,7 @@ class StreamReader(BrokerConnection):
     def _received(self, number: int, _: bool, name: bytes, properties: MessageProperties, data: bytes) -> None:
         self._last = number
         offset = properties.offset if properties.offset >= 0 else self._next
-        if offset < self._next:  # the broker sends whole chunks of a stream
+        if offset < self._next:  # the broker sends whole chunks, which may begin before the requested offset
             return
         self._next = offset + 1
         key = name.decode(errors="ignore")
@@ -72,7 +72,7 @@ class StreamReader(BrokerConnection):
 
 
 def read_stream(url: str, name: str, first: int) -> StreamReader | None:
-    """Return a reader of a stream from the offset `first`; None if the broker has no such queue.
+    """Return an open reader of a stream from the offset `first`; None if the broker has no queue `name`.
 
     Raises BusError, with the remedy, if the broker is unusable.
     """

@@ -20,28 +20,28 @@ class Subscription:
     """The function that receives the messages; None while the queue is only prepared and gathers them."""
     route: Route | None = None
     number: int = 0
-    """Distinguishes subscriptions of the same pattern."""
+    """A number from 0 that distinguishes subscriptions to the same pattern."""
     exchange: str = EXCHANGE
     active: bool = True
     """Whether the subscription has not been removed."""
     queue: str = ""
-    """The name of its queue on the broker."""
+    """The queue's name on the broker; empty before it is declared."""
     tag: str = ""
-    """The tag of its consumer on the broker."""
+    """The consumer's tag on the broker; empty without a consumer."""
     refusal: str = ""
-    """The broker's reason for a refusal; empty without a refusal."""
+    """The broker's reason for refusing the subscription; empty without a refusal."""
     epoch: int = 0
-    """The connection in which it was bound, counted from 1; 0 for none."""
+    """The number of the connection that bound the queue, counted from 1; 0 for none."""
     received: int = 0
     """The number of deliveries."""
     taken: int = 0
-    """The number of deliveries within the rate of the route."""
+    """The number of deliveries within the route's rate."""
     handled: int = 0
     """The number of `taken` deliveries that have been handled."""
     dropped: int = 0
     """The number of deliveries that exceeded the rate."""
     bound: threading.Event = field(default_factory=threading.Event)
-    """Set once the broker has answered."""
+    """Set when the broker has answered, or if it is away."""
 
     @property
     def must_arrive(self) -> bool:
@@ -57,15 +57,15 @@ class Delivery(NamedTuple):
     body: bytes
     properties: MessageProperties
     number: int
-    """The number by which to acknowledge it."""
+    """The broker's number for the acknowledgement."""
     epoch: int
-    """The connection in which it came: it can be acknowledged only there."""
+    """The number of the receiving connection, which alone can acknowledge the delivery."""
     again: bool = False
     """Whether the broker may have sent it before."""
     at: float = 0.0
     """The time of its arrival [s, monotonic]."""
     spent: bool = False
-    """Whether the delivery is only to be acknowledged, in its turn."""
+    """Whether the delivery only needs acknowledgement, because its message was dropped."""
 
 
 class Subscriptions:
@@ -90,7 +90,7 @@ class Subscriptions:
             return [*self._active, *self._prepared.values()]
 
     def add(self, pattern: str, handler: MessageHandler, route: Route | None, exchange: str = EXCHANGE) -> Subscription:
-        """Add a subscription; its `number` distinguishes it from others of the same pattern."""
+        """Add a subscription, with the first free `number` for its pattern, and return it."""
         with self._changing:
             numbers = {s.number for s in self._active if s.pattern == pattern}
             number = next(n for n in range(len(numbers) + 1) if n not in numbers)
@@ -99,7 +99,7 @@ class Subscriptions:
         return subscription
 
     def claim(self, pattern: str, handler: MessageHandler) -> Subscription | None:
-        """Give the prepared and bound subscription of this pattern its handler and return it; None if there is none."""
+        """Set the handler of the pattern's prepared and bound subscription, and return it; None if it is missing."""
         with self._changing:
             subscription = self._prepared.pop(pattern, None)
             if subscription is None or not subscription.bound.is_set() or subscription.refusal:
@@ -109,9 +109,9 @@ class Subscriptions:
         return subscription
 
     def prepare(self, routes: Mapping[str, Route]) -> tuple[list[Subscription], list[Subscription]]:
-        """Prepare subscriptions for these keys.
+        """Prepare subscriptions for those of these keys that have no handler.
 
-        Return all prepared ones, and those that were prepared before and are no longer needed.
+        Return all prepared subscriptions, and the earlier prepared ones that are no longer needed.
         """
         with self._changing:
             taken = {s.pattern for s in self._active}
@@ -130,7 +130,7 @@ class Subscriptions:
         return True
 
     def refuse(self, subscription: Subscription, reason: str) -> None:
-        """Remove a subscription that the broker refuses, prepared or not."""
+        """Record that the broker refuses a subscription, prepared or not, and remove it."""
         subscription.refusal, subscription.active = reason, False
         with self._changing:
             if subscription in self._active:

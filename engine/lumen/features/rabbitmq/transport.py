@@ -1,4 +1,4 @@
-"""The path of messages between a bus and its broker: two connections, and the thread of the handlers."""
+"""The path of messages between a bus and its broker: two connections, and the handlers' thread."""
 
 import time
 import uuid
@@ -20,9 +20,9 @@ from lumen.upkeep.drops import DropLog
 from lumen.upkeep.ratelimit import RateLimiter
 
 ASIDE_RATE = 10.0
-"""The rate at which unusable messages of a key are put aside [1/s]: a flood leaves room for those of others."""
+"""The maximum rate, for each key, of unusable messages put aside [1/s]; a flood leaves room for other keys."""
 REPLY_LIFETIME = 30.0
-"""The time that a reply waits for a broker that is away [s]."""
+"""The time for which a reply waits while the broker is away [s]."""
 
 
 class Transport:
@@ -38,10 +38,10 @@ class Transport:
 
     @property
     def drops(self) -> tuple[DropLog, ...]:
-        """The logs of dropped messages, by the reason for the loss.
+        """The logs of dropped messages, one for each kind of loss.
 
-        The reasons are: above the rate, failed by a fault of Lumen, unusable, with a repeated id, too old or too many
-        to wait, or impossible to send.
+        In order: messages above the rate, failed because of a fault in Lumen, unusable, with a repeated id, too old or
+        too many to wait, and impossible to send.
         """
         sent = self.publisher.outbox.drops, self.publisher.unsendable
         heard = self.dispatcher.guard.drops, self.dispatcher.unusable.drops, self.dispatcher.repeated
@@ -58,7 +58,7 @@ class Transport:
         self.publisher.begin_alone()
 
     def answer(self, reply_to: str, correlation_id: str, body: Any, sender: str = "") -> None:
-        """Send a reply: a text to a queue is sent unchanged, as modules of 2015 expect it; everything else is JSON."""
+        """Send a reply: a text to a queue is sent unchanged, as modules from 2015 expect; every other body as JSON."""
         ours = reply_to.split(".")[0] in KEY_PREFIXES and not reply_to.startswith("amq.")
         text = isinstance(body, str) and not ours
         deadline = time.monotonic() + REPLY_LIFETIME
@@ -75,12 +75,15 @@ class Transport:
         )
 
     def close(self, deadline: float) -> None:
-        """Send waiting messages, and receive those that are for this process, until the deadline [s, monotonic]."""
+        """Send waiting messages, and receive our own, until the deadline [s, monotonic].
+
+        Do nothing if called by a handler, or while the broker is blocked.
+        """
         if not self.dispatcher.inside and not self.publisher.blocked:
             self._flush(deadline)
 
     def end(self, deadline: float) -> bool:
-        """End all threads; return whether they have ended by the deadline [s, monotonic]."""
+        """End all threads and log the drops; return whether all threads ended by the deadline [s, monotonic]."""
         parts = (self.publisher, self.consumer, self.dispatcher)
         ended = [part.end(deadline - time.monotonic()) for part in parts]
         for drops in self.drops:
@@ -88,7 +91,7 @@ class Transport:
         return all(ended)
 
     def _refused(self, delivery: Delivery, reason: str) -> None:
-        """Put an unusable message aside, and reply to a sender that expects an answer."""
+        """Put an unusable message aside, within ASIDE_RATE, and reply to a sender that expects an answer."""
         properties = delivery.properties
         if self.publisher.has_side_queues and not self._aside.wait(delivery.key, ASIDE_RATE):
             headers = {"reason": reason[:1000], "key": delivery.key}
@@ -100,10 +103,9 @@ class Transport:
             self.answer(properties.reply_to, properties.correlation_id or "", f"message refused: {reason}")
 
     def _flush(self, deadline: float) -> None:
-        """Send a mark into each of our own queues, and wait until all marks have arrived.
+        """Send a mark into each of our own queues, and wait until all marks and the messages before them have arrived.
 
-        Everything sent before them has arrived then. Queues that other processes may also read get no mark: messages in
-        them are not lost.
+        Queues that other processes may also read get no mark, because their messages are not lost.
         """
         outbox = self.publisher.outbox
         if self.publisher.connection is None and not outbox:

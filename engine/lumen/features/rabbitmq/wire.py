@@ -1,8 +1,8 @@
-"""pika's connection with its own writing and reading of messages.
+"""pika's connection with faster writing and reading of messages.
 
 Nearly all traffic consists of three methods: publish, deliver and acknowledge. pika makes objects of their frames and
-looks up a handler for each, which takes most of a message's time; here they stay bytes. pika does everything else:
-login, channels, heartbeats, requests and answers.
+looks up a handler for each frame, which takes most of a message's time; here the frames stay bytes. pika handles
+everything else: login, channels, heartbeats, requests and answers.
 """
 
 from collections.abc import Callable
@@ -15,12 +15,12 @@ from pika import spec
 from lumen.features.rabbitmq.properties import MessageProperties, TolerantConnection, read_properties, short_text
 
 FLUSH_BYTES = 8 * 1024
-"""The number of bytes from which frames are sent at once; fewer wait for the next turn."""
+"""The size above which buffered frames are sent immediately [bytes]; fewer bytes wait for the next turn."""
 READ_BYTES = 64 * 1024
-"""The most bytes that one system call reads, one per turn: pika would read until nothing is left."""
+"""The most bytes read per turn, in one system call; pika would read until nothing is left."""
 
 MessageReader = Callable[[int, bool, bytes, MessageProperties, bytes], None]
-"""A function that receives a message's number, whether it may be a repetition, its key, properties and body."""
+"""A function that receives a message's number, whether it may be a repetition, its key, its properties and its body."""
 
 _HEAD = spec.FRAME_HEADER_SIZE
 _DELIVER, _ACK = (pack(">I", method.INDEX) for method in (spec.Basic.Deliver, spec.Basic.Ack))
@@ -29,7 +29,7 @@ _END = bytes([spec.FRAME_END])
 
 
 class _Coming:
-    """A message that is partly received."""
+    """A partly received message."""
 
     def __init__(self, method: bytes) -> None:
         self.consumer, at = _short(method, 4)
@@ -43,10 +43,11 @@ class _Coming:
 
 
 class WireConnection(TolerantConnection):
-    """A connection whose frames are sent together, by `flush`.
+    """A connection whose frames are buffered and sent together by `flush`.
 
-    `readers` has the function for each consumer's messages, by its tag. `unread` is called with the number of a message
-    without one; `confirmed` with the number of a message that the broker has, and whether all before it are included.
+    `readers` maps each consumer's tag to the function for its messages. `unread` is called with the number of a message
+    without a reader. `confirmed` is called with the number of a message that the broker has confirmed, and whether that
+    includes all earlier messages.
     """
 
     _frame_buffer: bytes
@@ -63,7 +64,7 @@ class WireConnection(TolerantConnection):
         super().__init__(*args, **kwargs)
 
     def send(self, channel: int, exchange: str, key: str, properties: bytes, body: bytes, *, mandatory: bool) -> None:
-        """Send a message; if `mandatory`, the broker returns it if no queue receives it.
+        """Buffer a message for `flush`; the broker returns a `mandatory` message that no queue receives.
 
         Raises ValueError if a name is too long for AMQP or not valid Unicode.
         """
@@ -75,7 +76,7 @@ class WireConnection(TolerantConnection):
         self._adapter_emit_data(b"".join(frames))
 
     def flush(self) -> None:
-        """Give the frames to the operating system as far as it accepts them; the rest is sent when it has room."""
+        """Write the frames to the socket as far as it accepts them; pika sends the rest later."""
         if self._frames:
             data, self._frames, self._size = b"".join(self._frames), [], 0
             if self._transport and not self.is_closed and (rest := data[self._sent(data) :]):
@@ -88,9 +89,9 @@ class WireConnection(TolerantConnection):
             transport._MAX_RECV_BYTES, transport._MAX_CONSUME_BYTES = READ_BYTES, 1
 
     def _sent(self, data: bytes) -> int:
-        """Send as much of `data` as the system accepts at once; return its size [bytes].
+        """Write as much of `data` as the socket accepts without waiting; return the size written [bytes].
 
-        pika sends the remainder, and handles the error that may have caused it.
+        Return 0 for TLS, if older data is still waiting, or after an error, which pika handles.
         """
         transport = self._transport
         if not self._plain or transport.get_write_buffer_size():
@@ -126,7 +127,7 @@ class WireConnection(TolerantConnection):
         self.bytes_received += at
 
     def _take(self, kind: int, data: bytes) -> bool:
-        """Process a frame's content; return False if it is left to pika."""
+        """Process a frame's content; return False if pika must process it."""
         if kind == spec.FRAME_METHOD:
             if data.startswith(_ACK):
                 number, several = unpack_from(">QB", data, 4)
@@ -163,7 +164,7 @@ def _frame(kind: int, channel: int, data: bytes) -> bytes:
 
 
 def _short(data: bytes, at: int) -> tuple[bytes, int]:
-    """Return a short string and the index of its end."""
+    """Return the short string at the index `at`, and the index after it."""
     start = at + 1
     end = start + data[at]
     return data[start:end], end
