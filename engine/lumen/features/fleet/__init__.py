@@ -1,4 +1,4 @@
-"""Updates of the robots of many houses."""
+"""Updates of robots in many houses."""
 
 from lumen.feature import Feature, PartRow, Phase, Subcommand
 

@@ -1,9 +1,8 @@
-"""The agent of a robot: it receives orders, and makes the robot run the ordered bundle without help.
+"""A robot's agent, which receives orders and makes the robot run the ordered bundle without help.
 
-The agent fetches the bundle by its hash and checks the signature. The reload then lints the bundle for the robot's
-body, replays the last visits, plans the change from the present configuration, applies it between two visitors, and
-watches the result. The agent does not compare clocks, never waits for the network, and trusts no message without a
-signature.
+The agent fetches the bundle by its hash and verifies the signature. The reload then lints the bundle for the robot's
+body, replays the last visits, plans the change from the present configuration, applies it between two visits, and
+watches the result. The agent does not compare clocks, never waits for the network, and trusts only signed messages.
 """
 
 import time
@@ -33,7 +32,7 @@ from lumen.features.fleet.signing import ORDER, verified
 from lumen.project.files import fingerprint
 
 MOST_TRIES = 2
-"""The robot gives up on a bundle once its process has ended this many times during the bundle's probation."""
+"""The number of restarts of the robot's process during a bundle's probation at which the agent gives up on it."""
 
 
 class FileTaker(FileTrier, Protocol):
@@ -41,24 +40,24 @@ class FileTaker(FileTrier, Protocol):
 
     @property
     def on_probation(self) -> bool:
-        """True if the files that run are still on probation."""
+        """Whether the running files are still on probation."""
 
     def offer(self, files: Mapping[str, bytes], answer: Callable[[Any], None]) -> None:
         """Apply files between two visits; `answer` receives each verdict."""
 
     def install(self, files: Mapping[str, bytes]) -> None:
-        """Write the files that run into the project's folder.
+        """Write the running files into the project's folder.
 
-        If several robots of the house share the folder, this happens once all of them run these files.
+        Do nothing while another robot that shares the folder runs different files.
         """
 
 
 class FleetAgent:
-    """The agent of one robot, which trusts the public key `key`.
+    """One robot's agent, which trusts the public key `key`.
 
     Call `tick` regularly, and `order` and `bundle` with the bodies of messages. `save` writes the agent's memory before
-    it acts on a message. `tell` receives lines for people; `incident` receives the kind and text of what the centre
-    should know at once. Nothing that leaves the house contains names or words of people.
+    the agent acts on a message. `tell` receives lines for the operator; `incident` receives the kind and text of an
+    incident for the centre. No data that leaves the house contains people's names or words.
     """
 
     def __init__(
@@ -90,11 +89,11 @@ class FleetAgent:
 
     @property
     def running(self) -> str:
-        """The hash of the bundle that runs, as the fleet knows it."""
+        """The running bundle's hash in the fleet, before its adaptation to this house."""
         return self.memory.names.get(self._taker.running, self._taker.running)
 
     def order(self, body: Any) -> None:
-        """Process a message with an order for this house; an invalid, unsigned or outdated one is only reported."""
+        """Process a message with an order for this house; an invalid, unsigned or outdated order is only reported."""
         match body:
             case {"order": str(text), "signature": str(signature)}:
                 pass
@@ -114,7 +113,7 @@ class FleetAgent:
         return None
 
     def bundle(self, body: Any) -> None:
-        """Process a message with a part of a bundle; it is ignored unless that bundle is wanted."""
+        """Process a message with a bundle's part; ignore it unless the robot needs that bundle."""
         wants = self.wants or self.trial.wants
         if not wants or not isinstance(body, Mapping) or body.get("hash") != wants:
             return
@@ -131,7 +130,7 @@ class FleetAgent:
         self.wants = self.trial.wants = ""
 
     def tick(self) -> None:
-        """Take the next possible steps towards running the ordered bundle, and towards trying one."""
+        """Advance the change to the ordered bundle, and the trial of a bundle."""
         memory, wanted = self.memory, self.memory.followed.wanted
         if self.state == PROBATION and self._taker.running != self._offered:
             self._fail(ROLLED_BACK, "the bundle failed its probation; the reason is in the house's journal")
@@ -159,9 +158,9 @@ class FleetAgent:
             self._go(goal, own=back)
 
     def presence(self, seconds: float, counted: Mapping[str, int]) -> RobotPresence:
-        """Return the robot's presence; add `seconds` of running and the new counts to its measures.
+        """Return the robot's presence, after adding `seconds` of running and the counts `counted` to its measures.
 
-        The measures are saved, and an unfinished installation is continued.
+        Save the measures, and continue an unfinished installation.
         """
         memory = self.memory
         if memory.counted != self._taker.running:
@@ -182,7 +181,7 @@ class FleetAgent:
         )  # fmt: skip
 
     def _go(self, goal: str, *, own: bool) -> None:
-        """Fetch a bundle or offer it to the reload; `own` means that its files have run here unchanged."""
+        """Fetch a bundle, or offer it to the reload; `own` means that the files have run here before."""
         self._asked = self.memory.order
         self.trouble = ""
         if self.memory.trying == goal and self.memory.tries >= MOST_TRIES:
@@ -234,7 +233,7 @@ class FleetAgent:
 
     def _proved(self) -> None:
         memory = self.memory
-        memory.trying, memory.tries, memory.done = "", 0, self._asked  # another order may have come meanwhile
+        memory.trying, memory.tries, memory.done = "", 0, self._asked  # a newer order may have arrived
         memory.writing = self._offered
         self.state = PROVED
         self._save(memory)
@@ -244,13 +243,13 @@ class FleetAgent:
         self._tell(f"bundle {self._goal[:12]} is proved")
 
     def _install(self) -> None:
-        """Write proved files into the project's folder if they are not there yet."""
+        """Write proved files into the project's folder if that is still pending."""
         writing = self.memory.writing
         if writing and (files := self._taker.files(writing)) is not None and not self._folder.keep(files):
             self._taker.install(files)
 
     def _fail(self, state: str, why: str, goal: str = "") -> None:
-        """Give up on a bundle until another order comes."""
+        """Give up on a bundle until the next order."""
         memory, about = self.memory, goal or self._goal
         if memory.failed.get(about, [None])[0] != self._asked:
             memory.failed[about] = [self._asked, state, why[:MAX_TEXT]]
@@ -262,7 +261,7 @@ class FleetAgent:
         self._save(memory)
 
     def _refuse(self, why: str) -> None:
-        """Report why a message is rejected, once until the next accepted order."""
+        """Report why a message is rejected; each reason only once until the next new order, at most 10 reasons."""
         if why not in self._told and len(self._told) < 10:
             self._told.add(why)
             self._tell(why)

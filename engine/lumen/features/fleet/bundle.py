@@ -1,4 +1,4 @@
-"""A bundle in transit: the files of a project in a zip, named by their hash, and signed."""
+"""A bundle in transit: a project's files in a signed zip, named by their hash."""
 
 import base64
 import binascii
@@ -17,22 +17,22 @@ HASH = re.compile(r"[0-9a-f]{64}")
 MAX_BYTES = 12_000_000
 """The maximum size of a packed bundle [bytes]."""
 PIECE = 500_000
-"""The maximum size of the parts that are sent in messages [bytes]."""
+"""The maximum size of a bundle's part in one message [bytes]."""
 
 
 class BadBundleError(UsageError):
-    """A message contains no valid bundle, the wrong one, or one without a trusted signature; the text is the reason."""
+    """A bundle in a message is invalid, the wrong bundle, or without a trusted signature; the text is the reason."""
 
 
 def packed(files: Mapping[str, bytes]) -> bytes:
-    """Return the files as a zip, without fleet.yaml and the marks of choices made at a start."""
+    """Return the files as a zip, without fleet.yaml and the marks of options chosen at the start."""
     return bundles.packed({path: files[path] for path in files if path != FLEET_FILE and belongs(path)})
 
 
 def messages_of(files: Mapping[str, bytes], signer: Signer) -> list[dict[str, Any]]:
-    """Return the signed bundle of these files as messages' bodies, each with one part.
+    """Return the signed bundle of these files as message bodies, each with one part.
 
-    Raises UsageError if it is too large.
+    Raises UsageError if the bundle exceeds MAX_BYTES.
     """
     hash, data = fingerprint(files), packed(files)
     if len(data) > MAX_BYTES:
@@ -46,17 +46,17 @@ def messages_of(files: Mapping[str, bytes], signer: Signer) -> list[dict[str, An
 
 
 class BundleParts:
-    """Joins the parts of one bundle at a time; they may come in any order and more than once."""
+    """Joins the parts of one bundle at a time; parts may arrive in any order and repeatedly."""
 
     def __init__(self) -> None:
         self._of: tuple[str, int] = ("", 0)
         self._parts: dict[int, bytes] = {}
 
     def take(self, body: Any, wanted: str, key: str) -> dict[str, bytes] | None:
-        """Add the part in a message's body; return the files once all parts are there, else None.
+        """Add the part in a message's body; return the files if all parts have arrived, else None.
 
-        Raises BadBundleError, and forgets the parts so far, if the bundle's hash is not `wanted`, if the owner of the
-        public key `key` has not signed it, or if it is damaged.
+        Raises BadBundleError, and forgets all parts, if the bundle's hash is not `wanted`, if it is not signed by the
+        owner of the public key `key`, or if it is damaged.
         """
         try:
             return self._take(body, wanted, key)
@@ -95,7 +95,10 @@ class BundleParts:
 
 
 def unpacked(data: bytes, wanted: str) -> dict[str, bytes]:
-    """Return the files in a zip. Raises BadBundleError if it is damaged or the files do not have the hash `wanted`."""
+    """Return the files in a zip.
+
+    Raises BadBundleError if it is damaged, contains other than a project's files, or their hash is not `wanted`.
+    """
     try:
         files = bundles.unpacked(data, MAX_PROJECT_BYTES)
     except DamagedBundleError as error:
@@ -108,6 +111,6 @@ def unpacked(data: bytes, wanted: str) -> dict[str, bytes]:
 
 
 def _inside(name: str) -> bool:
-    """Return True if a file of that name belongs to a project and stays inside its folder."""
+    """Return whether a file of that name belongs to a project and is inside the project's folder."""
     parts = name.split("/")
     return belongs(name) and "\\" not in name and not {"", ".", ".."} & {*parts} and "\0" not in name

@@ -1,4 +1,4 @@
-"""Trials of a bundle: a robot predicts what it would change here, without switching to it."""
+"""Trials of a bundle: a robot predicts the bundle's effects on it without switching to it."""
 
 import re
 from collections.abc import Callable, Mapping
@@ -14,29 +14,29 @@ from lumen.project.project_folders import MAIN_FILE
 HOUSE_KEYS = (
     "house", "robot", "robots", "hall", "stage", "units", "bus", "aliases", "timezone", "modules",
 )  # fmt: skip
-"""The keys of lumen.yaml about a house and its robots, besides those of features: bundles never change them."""
+"""The core's keys of lumen.yaml that describe a house and its robots: bundles never change them."""
 
 _BLOCK = re.compile(r"^(?=[^\s#])", re.MULTILINE)
 _KEY = re.compile(r"""["']?([\w-]+)["']?\s*:""")
 
 
 def fitted(bundle: Mapping[str, bytes], here: Mapping[str, bytes]) -> dict[str, bytes]:
-    """Return the files of a bundle, adapted to a house that runs the files `here`.
+    """Return a bundle's files, adapted to a house that runs the files `here`.
 
-    Raises UsageError as `at_home` does.
+    Raises UsageError if one of the lumen.yaml files is unusable (`at_home`).
     """
     return {**as_started(bundle, here), MAIN_FILE: at_home(bundle.get(MAIN_FILE, b""), here.get(MAIN_FILE, b""))}
 
 
 def as_started(files: Mapping[str, bytes], here: Mapping[str, bytes]) -> dict[str, bytes]:
-    """Return the files with the choices that were made when `here` was started, such as --model."""
+    """Return the files with the marks in `here` of options chosen at the start, such as --model."""
     return {**files, **{path: mark for path, mark in here.items() if not belongs(path)}}
 
 
 def at_home(shared: bytes, own: bytes) -> bytes:
-    """Return a bundle's lumen.yaml with the house's own keys in place of the bundle's.
+    """Return a bundle's lumen.yaml, `shared`, with the keys about a house from the house's own lumen.yaml, `own`.
 
-    Raises UsageError if one of the two is not UTF-8, or does not have its top-level keys at the left edge.
+    Raises UsageError if either file is not UTF-8, or has anything but a key at the left edge.
     """
     of_house = {*HOUSE_KEYS, *(key.partition(".")[0] for key, row in table("sections").items() if row.of_house)}
     ours = {key: text for key, text in _blocks(own) if key in of_house}
@@ -46,7 +46,7 @@ def at_home(shared: bytes, own: bytes) -> bytes:
 
 
 def _blocks(content: bytes) -> list[tuple[str, str]]:
-    """Return the top-level keys with their texts; the text before the first key has the key ""."""
+    """Return each top-level key with its text; comments and the text before the first key have the key ""."""
     try:
         parts = _BLOCK.split(content.decode().replace("\r\n", "\n"))
     except UnicodeDecodeError:
@@ -65,10 +65,10 @@ class FileTrier(Protocol):
 
     @property
     def running(self) -> str:
-        """The hash of the files that run."""
+        """The hash of the running files."""
 
     def files(self, hash: str) -> Mapping[str, bytes] | None:
-        """Return the files of that hash if they have run here, else None."""
+        """Return the files with that hash if they have run here, else None."""
 
     def attempt(self, files: Mapping[str, bytes], answer: Callable[[Any], None]) -> None:
         """Judge files as if they were applied: lint them, replay the last visits, and plan the change.
@@ -78,9 +78,9 @@ class FileTrier(Protocol):
 
 
 class BundleTrial:
-    """The trial of one robot; call `tick` with the bundle to try.
+    """One robot's trial; call `tick` with the bundle to try.
 
-    `said` is the result, empty until it is known; `wants` is the bundle's hash while it must be fetched.
+    `said` is the result, or empty before that; `wants` is the bundle's hash while the bundle must be fetched.
     """
 
     def __init__(self, trier: FileTrier, folder: BundleFolder, tell: Callable[[str], None]) -> None:
@@ -90,7 +90,7 @@ class BundleTrial:
         self.said: dict[str, Any] = {}
 
     def tick(self, bundle: str, running: str) -> None:
-        """Continue the trial of `bundle`, empty for none; `running` is the hash of the bundle that runs."""
+        """Continue the trial of `bundle`, empty for none; `running` is the hash of the running bundle."""
         if bundle != self._about:
             self._about, self._asked, self.said, self.wants = bundle, False, {}, ""
         if not bundle or self._asked:
@@ -131,9 +131,9 @@ class BundleTrial:
 
 
 def refusal(verdict: Mapping[str, Any]) -> str:
-    """Return the reason for a refusal: the place and code of lint's first error, else the verdict's reason.
+    """Return the reason for a refusal: the position and code of lint's first error, else the verdict's reason.
 
-    Messages of lint are left out, since recorded visits may contain people's names.
+    Lint's messages are left out, because recorded visits may contain people's names.
     """
     found = [row for row in verdict.get("diagnostics", ()) if row.get("severity") == "error"]
     if found:

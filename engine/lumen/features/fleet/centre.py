@@ -1,4 +1,4 @@
-"""A centre: it collects the robots' reports, advances a rollout, and sends each house orders that say what to run."""
+"""A centre, which collects the robots' reports, advances a rollout, and sends each house its orders."""
 
 import time
 from collections import deque
@@ -25,20 +25,21 @@ from lumen.language.fleet_keys import KEPT, PRESENCE, bundle_key, desired_key, r
 from lumen.ports import Bus, Message
 
 TELL_PERIOD = 10.0
-"""The maximum time between two orders to a house [s]; changes are sent at once."""
+"""The time after which an unchanged order is sent to a house again [s]; changes are sent immediately."""
 BUNDLE_PERIOD = 20.0
-"""The minimum time between sending the same bundle to a house twice [s]."""
+"""The minimum time before a bundle is sent to a house again [s]."""
 KEEP_PERIOD = 60.0
-"""The time between two lines of the journal that only record how long a step has been watched [s]."""
+"""The time between two journal lines that record only how long a step has been watched [s]."""
 MAX_WAITING = 20_000
 
 
 class Centre:
     """The centre of one fleet, on the centre's bus. Call `tick` about once a second.
 
-    Every decision is in its journal before it is sent; if that can't be written, the centre decides nothing, and
+    Every decision is in the journal before it is sent; if the journal can't be written, the centre decides nothing, and
     `trouble` has the reason. `clock` returns the time [s since 1970]. Incidents and counts are read from the `stream`;
-    without one they come by the bus, and are lost while no centre is running. `tell` receives lines for people.
+    without a stream, they arrive on the bus and are lost while no centre is running. `tell` receives lines for the
+    operator.
     """
 
     def __init__(
@@ -80,7 +81,7 @@ class Centre:
             self._order(now)
 
     def change(self, state: CentreState, what: str) -> None:
-        """Replace the state by one that a person decided; `what` describes it in the journal and to people.
+        """Set a state that an operator chose; `what` describes the change in the journal and in the output.
 
         Raises UsageError if the journal can't be written.
         """
@@ -90,7 +91,7 @@ class Centre:
         self._tell(what)
 
     def overview(self) -> dict[str, Any]:
-        """Return the state of the fleet as JSON data."""
+        """Return the fleet's state as JSON data."""
         told = overview(self.fleet, self.state, self.heard, self._clock())
         return told | {
             "incidents": list(self.log.incidents)[-20:],
@@ -120,13 +121,13 @@ class Centre:
                 self._send(said.robot.partition("/")[0], said.wants, now)
 
     def _count(self, entry: StreamEntry, now: float) -> None:
-        """Count a message in the log; messages of robots outside of the fleet only advance the place in the stream."""
+        """Count a message in the log; messages of robots outside the fleet only advance the stream's offset."""
         known = robot_of(entry.key) in self._known
         if line := self.log.take(entry if known else entry._replace(body=None), now):
             self._tell(line)
 
     def _send(self, house: str, hash: str, now: float) -> None:
-        """Send a house a bundle that one of its robots lacks, unless it was sent recently."""
+        """Send a house the bundle that a robot there lacks, unless it was sent within BUNDLE_PERIOD or is missing."""
         if abs(now - self._sent.get((house, hash), -BUNDLE_PERIOD)) < BUNDLE_PERIOD:
             return
         files = self.bundles.files(hash)
@@ -161,12 +162,12 @@ class Centre:
             )
 
     def _publish(self, key: str, body: Any, ttl: float) -> None:
-        with suppress(BusError):  # it is sent again
+        with suppress(BusError):  # orders and bundles are sent again
             self._bus.publish(key, body, ttl=ttl)
 
 
 def _settled(state: CentreState) -> CentreState:
-    """Return the state without the values that change at each tick."""
+    """Return the state without the times that change at each tick."""
     rollout = state.rollout and replace(state.rollout, watched=0.0, waited=0.0)
     return replace(state, looked=0.0, rollout=rollout)
 

@@ -1,4 +1,4 @@
-"""The centre's answers to requests: messages on `fleet.order`, answered once a tick."""
+"""The centre's answers to requests, which are messages on `fleet.order`."""
 
 from collections import deque
 from collections.abc import Mapping
@@ -23,7 +23,7 @@ ASKED = ("status", "publish", "rollout", "try", "pause", "go", "abort", "pin", "
 
 
 class CentreDesk:
-    """Answers each request with `{"ok": …}` and the result, or with the `reason` for a refusal."""
+    """Answers each request with `{"ok": …}` and the result, or the `reason` for a refusal."""
 
     def __init__(self, centre: Centre, bus: Bus) -> None:
         self._centre, self._bus = centre, bus
@@ -32,7 +32,7 @@ class CentreDesk:
         self._undo = bus.subscribe(ORDER, self._received.append)
 
     def tick(self, now: float) -> None:
-        """Answer the requests received; `now` is the centre's time [s since 1970]."""
+        """Answer the received requests; `now` is the centre's time [s since 1970]."""
         while self._received:
             message = self._received.popleft()
             try:
@@ -93,7 +93,10 @@ class CentreDesk:
         return {}
 
     def _named(self, name: str) -> str:
-        """Return the published bundle whose hash begins with `name`. Raises UsageError unless exactly one does."""
+        """Return the hash of the only published bundle whose hash begins with `name`.
+
+        Raises UsageError if no bundle or several bundles match.
+        """
         found = [hash for hash in self._centre.bundles.hashes() if name and hash.startswith(name)]
         if len(found) != 1:
             what = "more than one published bundle has" if found else "no published bundle has"
@@ -103,7 +106,7 @@ class CentreDesk:
         return found[0]
 
     def _plan(self, said: Mapping[str, Any]) -> RolloutPlan:
-        """Return the requested plan; what the request omits comes from fleet.yaml.
+        """Return the requested plan; fields that the request omits come from fleet.yaml.
 
         Raises UsageError if a step or the condition is invalid.
         """

@@ -1,4 +1,4 @@
-"""The journal of a centre's decisions, one per line: each is on the disk before any robot learns of it."""
+"""The journal of a centre's decisions, one per line; each decision is on disk before the centre sends it."""
 
 import json
 import os
@@ -13,17 +13,17 @@ from lumen.upkeep.own_folders import private_folder
 
 FILE = "centre.jsonl"
 TAIL = 4_000_000
-"""The size of the part at the end of the file that is searched for the last state [bytes]."""
+"""The size of the file's end that is searched for the last state [bytes]."""
 
 
 class CentreJournal:
-    """The journal in a folder, which is created with the first line."""
+    """The journal in a folder; the first line creates both."""
 
     def __init__(self, folder: Path) -> None:
         self.file = folder / FILE
 
     def last(self) -> CentreState | None:
-        """Return the last state in the journal, None if it has none; a line that a crash has cut off is ignored."""
+        """Return the last valid state in the journal, or None; a line that a crash cut off is ignored."""
         for row in reversed(self.rows()):
             try:
                 return state_from_json(row["state"])
@@ -32,7 +32,10 @@ class CentreJournal:
         return None
 
     def rows(self) -> list[Mapping[str, Any]]:
-        """Return the last lines, the newest last, each with `at`, `what` happened, and the `state` after it."""
+        """Return the lines in the file's last `TAIL` bytes, newest last; empty if the file can't be read.
+
+        Each line has the time `at`, `what` happened, and the `state` after that.
+        """
         try:
             with open(self.file, "rb") as opened:
                 opened.seek(max(0, self.file.stat().st_size - TAIL))
@@ -50,7 +53,7 @@ class CentreJournal:
         return found
 
     def write(self, what: str, state: CentreState) -> str:
-        """Add a line and wait until it is on the disk; return the error, else an empty text."""
+        """Add a line and wait until it is on disk; return the error, else an empty string."""
         row = {"at": iso_time(time.time(), "seconds", offset=True), "what": what, "state": state_to_json(state)}
         try:
             private_folder(self.file.parent)
@@ -63,7 +66,7 @@ class CentreJournal:
         return ""
 
     def _torn(self) -> bool:
-        """Return True if a crash has cut off the last line."""
+        """Return whether a crash has cut off the last line."""
         if not self.file.exists() or not self.file.stat().st_size:
             return False
         with open(self.file, "rb") as opened:

@@ -1,4 +1,4 @@
-"""`lumen fleet`: many houses, and their updates."""
+"""`lumen fleet`: update the robots of many houses."""
 
 import argparse
 import getpass
@@ -69,7 +69,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Run the subcommand in `options.what` and return 0. Raises UsageError, ProjectError or BusError if it fails."""
+    """Run the subcommand `options.what` and return 0. Raises UsageError, ProjectError or BusError if it fails."""
     root = Path(options.project or ".")
     match options.what:
         case "keygen":
@@ -139,7 +139,7 @@ def bus_name(url: str) -> str:
 def _publish(options: argparse.Namespace, root: Path) -> dict[str, Any]:
     """Lint the project, send it to the centre as a bundle, and return the centre's answer.
 
-    Raises ProjectError if the project has errors; nothing is sent then.
+    Raises ProjectError before sending if the project has errors.
     """
     found = version(options.name, root) if options.name else version(None, root)
     files = {path: content for path, content in found.files.items() if path != FLEET_FILE}
@@ -184,9 +184,9 @@ def _diff(options: argparse.Namespace, root: Path) -> int:
 
 
 def _asked(options: argparse.Namespace, root: Path, body: Mapping[str, Any], what: str = "") -> dict[str, Any]:
-    """Return the centre's answer to a request, without its `ok`.
+    """Return the centre's answer to a request, without `ok`.
 
-    Raises UsageError with the centre's reason if it refuses, and BusError if it does not answer.
+    Raises UsageError, with the centre's reason, for a refusal, and BusError if no centre answers.
     """
     url = _address(options, root)
     bus = _connected(url, "lumen fleet")

@@ -1,4 +1,4 @@
-"""The incidents and counts of a fleet at its centre, saved together with the offset reached in the stream."""
+"""The incidents and counts of a fleet at its centre, saved together with the next offset in the stream."""
 
 import time
 from collections import deque
@@ -16,15 +16,15 @@ MAX_INCIDENTS, MAX_IDS, MAX_BUNDLES = 200, 2000, 4
 SAVE_PERIOD = 10.0
 """The time between two writes [s].
 
-After a process is killed, the next one reads the messages since the last write again, and adds them to the saved
+After a process is killed, the next process rereads the messages since the last write, and adds them to the saved
 counts.
 """
 
 
 class FleetLog:
-    """The log in the home of a centre; `next` is the stream's next offset to read.
+    """The log in a centre's home; `next` is the stream's next offset to read.
 
-    Repeated messages are recognised by their id, since a shovel of the broker sends unconfirmed ones again.
+    Repeated messages are recognised by their ids, because a broker's shovel resends unconfirmed messages.
     """
 
     def __init__(self, home: Home) -> None:
@@ -72,7 +72,7 @@ class FleetLog:
         return told
 
     def numbers(self, measures: Mapping[str, FleetMeasure]) -> list[dict[str, Any]]:
-        """Return each bundle's robots, hours and rates of `measures`, the most recently reported bundle last."""
+        """Return each bundle's number of robots, hours and rates of `measures`, the last reported bundle last."""
         return [
             {
                 "bundle": bundle,
@@ -84,9 +84,9 @@ class FleetLog:
         ]
 
     def save(self, *, now: bool = False) -> str:
-        """Write the log if it changed, at once with `now`, else at most every `SAVE_PERIOD`.
+        """Write a changed log, immediately with `now`, else at most every `SAVE_PERIOD`.
 
-        Return the error, else an empty text.
+        Return the error, else an empty string.
         """
         if not self._changed or not (now or time.monotonic() - self._saved > SAVE_PERIOD):
             return ""

@@ -1,4 +1,4 @@
-"""Installs the files of a proved bundle in the project's folder, and completes that after a crash."""
+"""Installs a proved bundle's files in the project's folder, and completes the installation after a crash."""
 
 import os
 from collections.abc import Iterable, Iterator, Mapping
@@ -17,16 +17,13 @@ MAX_FILE = 40_000_000
 
 
 class BundleFolder:
-    """Bundles in a folder, which is created with the first one. Errors of the disk never raise."""
+    """A folder of bundles, created with the first bundle. Disk errors raise no exceptions."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
 
     def keep(self, files: Mapping[str, bytes]) -> str:
-        """Write the files of a bundle, all or nothing; return the error, else an empty text.
-
-        A damaged bundle of the same hash is replaced.
-        """
+        """Write a bundle atomically, unless the folder has it undamaged; return the error, else an empty string."""
         hash = fingerprint(files)
         if self.files(hash) is not None:
             return ""
@@ -47,14 +44,14 @@ class BundleFolder:
             return None
 
     def hashes(self) -> list[str]:
-        """Return the hashes of the kept bundles, the newest last."""
+        """Return the hashes of the stored bundles, newest last; empty if the folder can't be read."""
         with suppress(OSError):
             found = sorted(self.folder.glob("*.zip"), key=lambda path: path.stat().st_mtime)
             return [path.stem for path in found if HASH.fullmatch(path.stem)]
         return []
 
     def prune(self, wanted: Iterable[str]) -> None:
-        """Delete all bundles but those with these hashes."""
+        """Delete all bundles except those with these hashes."""
         for hash in {*self.hashes()} - {*wanted}:
             with suppress(OSError):
                 self._path(hash).unlink()
@@ -67,14 +64,14 @@ FOLDER = "fleet"
 
 
 def bundle_folder(root: Path) -> BundleFolder:
-    """Return the folder in which the robots of a project keep bundles."""
+    """Return the folder in which a project's robots store bundles."""
     return BundleFolder(home_of(root) / FOLDER)
 
 
 def install(root: Path, files: Mapping[str, bytes]) -> Mapping[str, bytes]:
-    """Replace the project's files with these, and delete all others; return the files that are then there.
+    """Replace the project's files with these, and delete all others; return the resulting files.
 
-    Links and fleet.yaml stay. A file that can't be written or deleted stays as it is.
+    Links, fleet.yaml, and files that can't be written or deleted stay unchanged.
     """
     there, wanted = _own(read_files(root)), _own(files)
     for path, content in wanted.items():
@@ -87,15 +84,15 @@ def install(root: Path, files: Mapping[str, bytes]) -> Mapping[str, bytes]:
 
 
 def all_have(root: Path, hash: str, robots: Iterable[str]) -> bool:
-    """Return True if each of these robots, which share the folder, last saved that it runs the files of that hash."""
+    """Return whether each of these robots, which share the folder, last saved that it runs the files with `hash`."""
     known = {robot: memory for _, robot, memory in _memories(root)}
     return all(robot in known and known[robot].counted == hash for robot in robots)
 
 
 def finish(root: Path) -> None:
-    """Complete an installation of files that was interrupted when the process ended.
+    """Complete the installations that the end of a process interrupted.
 
-    This waits while another robot that shares the folder neither runs nor installs these files.
+    Skip an installation while another robot that shares the folder neither runs nor installs the same files.
     """
     found = list(_memories(root))
     for home, robot, memory in found:
@@ -108,25 +105,25 @@ def finish(root: Path) -> None:
 
 
 def written(home: Home, robot: str, memory: AgentMemory) -> None:
-    """Save that the files of this robot's agent are installed."""
+    """Save that the agent's files are installed."""
     memory.writing = ""
     keep(home, robot, memory)
 
 
 def _memories(root: Path) -> Iterator[tuple[Home, str, AgentMemory]]:
-    """Yield the agents' memories in a project's folder, each with its home and its robot's name."""
+    """Yield the home, robot name and memory of each agent of a project."""
     for file in sorted(home_of(root).rglob(memory_file("*"))):
         home, robot = Home(file.parent), file.name.removeprefix("fleet-").removesuffix(".json")
         yield home, robot, remember(home, robot)
 
 
 def _own(files: Mapping[str, bytes]) -> dict[str, bytes]:
-    """Return the files that a bundle may change: all files of the project but fleet.yaml."""
+    """Return the files that a bundle can change: all project files except fleet.yaml."""
     return {path: content for path, content in files.items() if path != FLEET_FILE and belongs(path)}
 
 
 def _write(path: Path, content: bytes) -> None:
-    """Write a file completely or not at all. Errors are ignored here: the next reading of the files shows them."""
+    """Write a file atomically. Errors are ignored, because the next reading of the files shows them."""
     draft = path.with_name(f".{path.name}.new")
     with suppress(OSError):
         path.parent.mkdir(parents=True, exist_ok=True)

@@ -1,4 +1,4 @@
-"""The state of a fleet, as `lumen fleet status --format json` prints it."""
+"""A fleet's state, as `lumen fleet status --format json` prints it."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -15,7 +15,7 @@ MOST_SKEW = 30.0
 
 
 def overview(fleet: Fleet, state: CentreState, heard: Mapping[str, HeardPresence], now: float) -> dict[str, Any]:
-    """Return the houses, the robots and the rollout as JSON data; `now` is the centre's time [s since 1970]."""
+    """Return the houses, robots, rollout and trial as JSON data; `now` is the centre's time [s since 1970]."""
     robots = [_robot(name, state, heard.get(name), fleet, now) for name in fleet.robots]
     houses = [
         {

@@ -1,4 +1,4 @@
-"""The part that connects a robot's fleet agent with the bus, the reload and the robot's home."""
+"""The part that connects a robot's fleet agent to the bus, the reload and the robot's home."""
 
 import os
 import time
@@ -48,24 +48,24 @@ class MeasureCounter(Observer):
                 self._counts[name] += sum(fnmatchcase(state, measure.enters) for state in step.entered)
 
     def take(self) -> dict[str, int]:
-        """Return the count of each measure since the last call."""
+        """Return the count of each measure since the last call, and reset the counts."""
         found, self._counts = self._counts, dict.fromkeys(self._measures, 0)
         return found
 
 
 HOUSE_VARIABLE = "LUMEN_HOUSE"
 PERIOD = 10.0
-"""The time between two messages about the robot's presence [s]."""
+"""The maximum time between two messages about the robot's presence [s]."""
 NUMBERS_PERIOD = 3600.0
 """The time between two messages with counts for long-term statistics [s].
 
-The counts of a bundle are also sent at once when it ends.
+A bundle's counts are also sent as soon as another bundle runs.
 """
 MAX_WAITING = 50
 
 
 class ReloadTaker:
-    """Applies files through the reload of a running exhibition; `installed` is called when they are in the folder."""
+    """Applies files through a running exhibition's reload; `installed` is called when the project folder has them."""
 
     def __init__(
         self, root: Path, reloader: Reloader, behavior: LiveBehavior, home: Home, installed: Callable[[], None]
@@ -75,16 +75,16 @@ class ReloadTaker:
 
     @property
     def running(self) -> str:
-        """The hash of the files that run."""
+        """The hash of the running files."""
         return self._behavior.loop.project.hash
 
     @property
     def on_probation(self) -> bool:
-        """True if the files that run are still on probation."""
+        """Whether the running files are still on probation."""
         return self._reloader.on_probation
 
     def files(self, hash: str) -> Mapping[str, bytes] | None:
-        """Return the files of that hash if they are kept or in the project's folder, else None."""
+        """Return the files with that hash if they are stored or in the project's folder, else None."""
         kept = self._store.files(hash)
         if kept is None and fingerprint(there := read_files(self._root)) == hash:
             return there
@@ -99,7 +99,7 @@ class ReloadTaker:
         self._reloader.offer(files, answer, dry=True)
 
     def install(self, files: Mapping[str, bytes]) -> None:
-        """Write files into the project's folder if all robots that share it run them; else do nothing."""
+        """Write files into the project's folder, but only if all robots that share the folder run these files."""
         project, hash = self._behavior.loop.project, fingerprint(files)
         if project.told_apart and not all_have(self._root, hash, project.robots):
             return
@@ -113,7 +113,7 @@ class ReloadTaker:
 
 
 class FleetPart(Part):
-    """The part that runs this robot's agent; it needs the same roles as the reload."""
+    """The part that runs this robot's agent, only while its process has the roles `needs`."""
 
     patient = True
 
@@ -151,7 +151,7 @@ class FleetPart(Part):
         self._tell_presence()
 
     def tick(self, now: float, changes: Sequence[Event]) -> None:
-        """Process received orders and bundles, advance the agent, and publish the presence if it changed or is due."""
+        """Process received orders and bundles, advance the agent, and publish a changed or due presence."""
         while self._received:
             message = self._received.popleft()
             hear = self.agent.order if message.key == desired_key(self._house) else self.agent.bundle
@@ -176,7 +176,7 @@ class FleetPart(Part):
             self._bus.publish(presence_key(self._house, self._robot), said.to_json(), ttl=60.0)
 
     def _tell_numbers(self, now: float) -> None:
-        """Publish the counts of the previous bundle once another one runs; those of the present bundle each hour."""
+        """Publish the previous bundle's counts when another bundle runs, and the present bundle's counts each hour."""
         memory = self.agent.memory
         before, self._counting = self._counting, (self.agent.running, memory.since)
         ended = bool(before[0]) and before != self._counting
@@ -195,9 +195,9 @@ class FleetPart(Part):
 
 
 def make(services: Services) -> FleetPart | None:
-    """Make the part of a robot that belongs to a fleet.
+    """Make the part for a robot that belongs to a fleet.
 
-    None for any other robot, in a story, without a project's folder, or with `--reload off`.
+    Return None for any other robot, in a story, without a project folder, or with `--reload off`.
     """
     directory, project = directory_of(services), services.plan.project
     if directory is None or directory.home is None or services.plan.story:
@@ -213,10 +213,10 @@ def make(services: Services) -> FleetPart | None:
 
 
 def fleet_of(root: Path, house: str, robot: str) -> tuple[Fleet, str] | None:
-    """Return the fleet of a robot and its house; None if fleet.yaml does not list the robot or has no key.
+    """Return a robot's fleet and house; None if fleet.yaml has errors or no key, or if no single house is found.
 
-    The house is the one named `house`, else the one that the environment variable names, or the only one with that
-    robot.
+    The house is `house`, if the fleet has it, else the value of HOUSE_VARIABLE, else the only house with the robot. It
+    must list the robot.
     """
     read, found = read_fleet(root)
     fleet = read.built if read else None

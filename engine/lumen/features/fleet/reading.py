@@ -29,7 +29,7 @@ def build_fleet(data: Any, report: DocumentReport, *, name: str) -> Fleet | None
 
 
 def read_fleet(root: Path) -> tuple[BuiltFile[Fleet] | None, list[Diagnostic]]:
-    """Return the fleet of that folder, None if fleet.yaml is missing or unreadable, and the findings about it."""
+    """Return the fleet in a folder and the findings about it; None if fleet.yaml is missing or unreadable."""
     try:
         content = read_regular(root / FLEET_FILE, MAX_FILE_BYTES)
     except OSError:

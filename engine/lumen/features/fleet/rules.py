@@ -31,7 +31,7 @@ KEY_BYTES = 32
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report errors in the fleet of a project, if it has one."""
+    """Report errors in a project's fleet, if the project has one."""
     fleet, report = draft.beside.get(FLEET_FILE), draft.reports.get(FLEET_FILE)
     if isinstance(fleet, Fleet) and report is not None:
         check_fleet(fleet, report)
@@ -39,7 +39,7 @@ def check(draft: ProjectDraft) -> None:
 
 
 def _at_home(draft: ProjectDraft, fleet: Fleet) -> None:
-    """Report a house of lumen.yaml, and robots there, that the fleet does not have."""
+    """Report the house in lumen.yaml if the fleet lacks it, else the robots that the fleet's house lacks."""
     settings, main = draft.settings, draft.main
     data = main.document.data if main else None
     if settings is None or main is None or not isinstance(data, Mapping) or "house" not in data:
@@ -56,7 +56,7 @@ def _at_home(draft: ProjectDraft, fleet: Fleet) -> None:
 
 
 def check_fleet(fleet: Fleet, report: DocumentReport) -> None:
-    """Report errors in a fleet, whose folder need not contain a project."""
+    """Report errors in a fleet; its folder need not contain a project."""
     _key(fleet, report)
     addresses: list[tuple[NodePath, str]] = [(("centre", "broker"), fleet.centre)] if fleet.centre else []
     addresses += [(("houses", name, "broker"), house.broker) for name, house in fleet.houses.items()]
@@ -111,7 +111,7 @@ def _known(names: Iterable[str], known: Iterable[str], what: str, where: NodePat
 
 
 def _steps(fleet: Fleet, report: DocumentReport) -> None:
-    """Report steps by share that are not larger than the share before; groups may have any size."""
+    """Report unknown groups, and shares that are not larger than the share before; groups can have any size."""
     last = 0.0
     for i, step in enumerate(fleet.rollout.steps):
         where: NodePath = ("rollout", "steps", i, "to")

@@ -1,4 +1,4 @@
-"""A running centre: its folder, its bus, and a tick each second until it is ended."""
+"""A running centre: its folder, its bus, and a tick each second."""
 
 import threading
 import time
@@ -29,7 +29,7 @@ FOLDER = "centre"
 
 
 def fleet_in(root: Path) -> Fleet:
-    """Return the fleet of that folder. Raises UsageError if fleet.yaml is missing or has errors."""
+    """Return the fleet in a folder. Raises UsageError if fleet.yaml is missing or has errors."""
     read, found = read_fleet(root)
     if read is None and not found:
         raise UsageError(f"there is no fleet.yaml in {root.absolute()}: write one, as docs/fleet.md shows")
@@ -40,9 +40,9 @@ def fleet_in(root: Path) -> Fleet:
 
 
 class ServedCentre:
-    """The centre of the fleet in a folder, on a bus that it closes at its end; the stream is read at `url`.
+    """The centre of the fleet in a folder, on a bus that `close` closes; it reads the stream of the broker at `url`.
 
-    Raises UsageError if another process is the centre already, or if the key is not the one of fleet.yaml.
+    Raises UsageError if fleet.yaml is unusable, its key does not match `signer`, or another process is the centre.
     """
 
     def __init__(self, root: Path, signer: Signer, bus: Bus, tell: Callable[[str], None], url: str = "") -> None:
@@ -66,7 +66,7 @@ class ServedCentre:
         self._ending = threading.Event()
 
     def tick(self) -> None:
-        """Answer requests and advance the centre once."""
+        """Answer the received requests, then advance the centre."""
         self._desk.tick(time.time())
         self.centre.tick()
 

@@ -1,4 +1,4 @@
-"""A fleet: houses with their robots, groups of them, and the plan for updating them step by step."""
+"""A fleet: houses with their robots, groups of robots, and the plan for updating robots step by step."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -6,9 +6,9 @@ from dataclasses import dataclass, field
 from lumen.language.diagnostics import NodePath
 
 EVERYBODY = "all"
-"""The target of a rollout's step that means every robot."""
+"""The target of a rollout step that includes every robot."""
 DEFAULT_PAUSE = 1800.0
-"""The default time to watch each step of a rollout [s]."""
+"""The default time for which each rollout step is watched [s]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,7 +32,7 @@ class FleetGroup:
     houses: tuple[str, ...] = ()
     """Houses whose robots all belong to the group."""
     labels: Mapping[str, str] = field(default_factory=dict)
-    """Labels: all robots of houses that have all of these belong to the group; none if it is empty."""
+    """Labels of houses: a house that has all these labels belongs to the group; no house if this is empty."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,21 +40,21 @@ class FleetMeasure:
     """A count at each robot, reported per hour or per count of another measure."""
 
     event: str = ""
-    """The name of the events to count (`*` for any part of it)."""
+    """The pattern of the names of events to count, with `*` for any text; empty for none."""
     enters: str = ""
-    """The state whose entries to count (`*` for any part of it)."""
+    """The pattern of the names of states whose entries to count, with `*` for any text; empty for none."""
     per: str = ""
     """The measure to divide by; empty for hours."""
 
 
 @dataclass(frozen=True, slots=True)
 class StepTarget:
-    """The robots that have the bundle after a step: those of a group, or a share of all robots."""
+    """The robots that have the bundle after a step: a group, or a share of all robots."""
 
     group: str = ""
-    """The name of the group, empty for a share."""
+    """The group's name; empty for a share."""
     share: float = 0.0
-    """The share of all robots, from 0 to 1."""
+    """The share of all robots, from 0 to 1; 0 for a group."""
 
     def __str__(self) -> str:
         return self.group or (EVERYBODY if self.share == 1.0 else f"{100.0 * self.share:g}%")
@@ -62,15 +62,15 @@ class StepTarget:
 
 @dataclass(frozen=True, slots=True)
 class RolloutPlan:
-    """The steps of a rollout and the conditions of going on to the next."""
+    """The steps of a rollout, and the conditions for the next step."""
 
     steps: tuple[StepTarget, ...] = (StepTarget(share=1.0),)
     pause: float = DEFAULT_PAUSE
     """The time for which each step is watched [s]."""
     abort_if: str = ""
-    """The condition that rolls all robots back, empty for none."""
+    """The condition that rolls all robots back; empty for none."""
     try_first: bool = False
-    """True if all robots try the bundle before the first one switches to it."""
+    """True if all robots try the bundle before the first robot switches to it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,7 +80,7 @@ class Fleet:
     centre: str = ""
     """The address of the centre's broker."""
     key: str = ""
-    """The public key, in base64, with which robots check bundles and orders."""
+    """The public key, in base64, by which robots verify bundles and orders; empty if missing."""
     houses: Mapping[str, FleetHouse] = field(default_factory=dict)
     groups: Mapping[str, FleetGroup] = field(default_factory=dict)
     measures: Mapping[str, FleetMeasure] = field(default_factory=dict)
@@ -89,11 +89,11 @@ class Fleet:
 
     @property
     def robots(self) -> tuple[str, ...]:
-        """All robots, as `HOUSE/ROBOT`, in the order written."""
+        """All robots, as `HOUSE/ROBOT`, in the order of fleet.yaml."""
         return tuple(f"{name}/{robot}" for name, house in self.houses.items() for robot in house.robots)
 
     def members(self, target: StepTarget) -> tuple[str, ...]:
-        """Return the robots that a step may choose from: those of its group, or all."""
+        """Return the robots that a step can choose: those of its group, or all if the fleet has no such group."""
         group = self.groups.get(target.group)
         if group is None:
             return self.robots
@@ -106,7 +106,10 @@ class Fleet:
 
 
 def step_target(text: str) -> StepTarget | None:
-    """Return the target that `demo-1`, `10%` or `all` means; None for a share that is not in (0 %, 100 %]."""
+    """Return the target for a group such as `demo-1`, a share such as `10%`, or `all`.
+
+    Return None if a share is not a number in (0 %, 100 %].
+    """
     if text == EVERYBODY:
         return StepTarget(share=1.0)
     if not text.endswith("%"):

@@ -1,4 +1,4 @@
-"""Signatures (ed25519, RFC 8032): they decide whose bundles and orders robots accept."""
+"""Signatures (ed25519, RFC 8032) by which robots decide whose bundles and orders to accept."""
 
 import base64
 import binascii
@@ -10,7 +10,7 @@ from lumen.errors import UsageError
 from lumen.extras import demand
 
 BUNDLE, ORDER = b"lumen bundle\n", b"lumen order\n"
-"""The prefixes of signed data, so that a signature of one kind is not valid for another."""
+"""The prefixes of signed data: a bundle's signature is not valid for an order, nor the reverse."""
 
 
 def generate(file: Path) -> str:
@@ -35,7 +35,7 @@ def generate(file: Path) -> str:
 class Signer:
     """Signs with the private key in a file; `public` is the public key in base64.
 
-    Raises UsageError if the file can't be read or has no valid key.
+    Raises UsageError if the file can't be read or contains no valid key.
     """
 
     def __init__(self, file: Path) -> None:
@@ -49,12 +49,12 @@ class Signer:
         self.public = base64.b64encode(self._key.public_key().public_bytes_raw()).decode()
 
     def sign(self, kind: bytes, data: bytes) -> str:
-        """Return the signature in base64 of data of that kind, `BUNDLE` or `ORDER`."""
+        """Return the base64 signature of data with the prefix `kind`, `BUNDLE` or `ORDER`."""
         return base64.b64encode(self._key.sign(kind + data)).decode()
 
 
 def verified(public: str, kind: bytes, data: bytes, signature: str) -> bool:
-    """Return True if this public key's owner signed the data as that kind; invalid texts give False."""
+    """Return whether this public key's owner signed the data as `kind`; False for an invalid key or signature."""
     keys = _ed25519()
     try:
         key = keys.Ed25519PublicKey.from_public_bytes(base64.b64decode(public, validate=True))
@@ -66,7 +66,7 @@ def verified(public: str, kind: bytes, data: bytes, signature: str) -> bool:
 
 def _ed25519() -> Any:
     demand("fleet", "a fleet", "cryptography")
-    from cryptography.hazmat.primitives.asymmetric import ed25519  # needed only to sign or to check
+    from cryptography.hazmat.primitives.asymmetric import ed25519  # needed only to sign or verify
 
     return ed25519
 

@@ -11,7 +11,7 @@ SHORT = 12
 
 
 def fleet_lines(found: Mapping[str, Any]) -> Iterator[str]:
-    """Yield lines about the rollout, each robot, and the centre's problems, from `Centre.overview`."""
+    """Yield lines about the rollout, its trials, each robot, and the centre's problems, from `Centre.overview`."""
     yield from _rollout(found["rollout"])
     yield from _trial(found["trying"])
     rows = [

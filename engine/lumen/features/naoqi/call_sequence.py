@@ -9,10 +9,10 @@ from lumen.errors import RobotError, RobotFailedError
 from lumen.features.naoqi.session import NaoqiCall
 
 CANCEL_TIMEOUT = 1.5
-"""The longest time for which a cancelled command may continue [s]: a walk ends after the step in the air."""
+"""The time limit for the end of a cancelled command [s]; a walk first completes its current step."""
 
 ABORT_RETRY_PERIOD = 0.25
-"""The time between two repetitions of the abort [s]: NAOqi may have received an abort before the command itself."""
+"""The time between two aborts [s], because NAOqi may have received the first abort before the command."""
 
 
 @dataclass(frozen=True)
@@ -29,11 +29,10 @@ CallSteps = Generator[Awaited, Any, Any]
 
 
 class CallSequence:
-    """An activity of the executor that consists of steps, each of which waits for a call.
+    """An activity of the executor in steps that wait for calls.
 
-    `abort` returns calls that make NAOqi end the command; `recover` returns the steps afterwards. If NAOqi has not
-    ended the command within `patience` [s] after it was cancelled, the command fails, so that nothing waits for it
-    forever.
+    `abort` returns the calls that make NAOqi end the command; `recover` returns the steps after an abort. If NAOqi does
+    not end a cancelled command within `patience` [s], the command fails.
     """
 
     def __init__(
@@ -50,7 +49,7 @@ class CallSequence:
         self._until = self._again = inf
 
     def advance(self, now: float) -> bool:
-        """Take the steps that are possible at `now` [s]; return True at the end. Raises RobotError if a call failed."""
+        """Run all possible steps at `now` [s]; return True at the end. Raises RobotError if a call or abort failed."""
         if self._cancelled:
             if not self._quiet(now):
                 return False
@@ -62,15 +61,15 @@ class CallSequence:
         return self._go(now)
 
     def cancel(self) -> None:
-        """Abort the command; `advance` then waits for its end."""
+        """Abort the command; `advance` then waits until the command ends."""
         if not self._cancelled:
             self._cancelled = True
             self._aborting = list(self._abort())
 
     def _quiet(self, now: float) -> bool:
-        """Return True if NAOqi has ended the cancelled command; repeat the abort until then.
+        """Return whether NAOqi has ended the cancelled command; if not, repeat the abort.
 
-        Raises RobotError after `patience`.
+        Raises RobotFailedError after `patience`.
         """
         if self._until == inf:
             self._until, self._again = now + self._patience, now + ABORT_RETRY_PERIOD
@@ -85,7 +84,7 @@ class CallSequence:
         return False
 
     def _go(self, now: float) -> bool:
-        """Take the steps that are possible by now; return True after the last."""
+        """Run all possible steps at `now` [s]; return True after the last step."""
         try:
             if not self._begun:
                 self._begun, self._wait = True, next(self._steps)

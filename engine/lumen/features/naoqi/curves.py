@@ -1,8 +1,8 @@
 """Motions in NAOqi's form: one call of `angleInterpolationBezier` for all joints and keys.
 
-Bezier, cubic and linear tracks are converted exactly: each of their segments is a cubic curve. Minimum jerk is of the
-fifth degree, and becomes as many cubic pieces, each with the right speed at both ends, as keep the error below
-`MAX_CURVE_ERROR`; it is at most 360 d / (384 n^4) for a distance d in n pieces.
+Bezier, cubic and linear tracks are converted exactly, because their segments are cubic curves. A minimum-jerk segment
+has degree five. It becomes n cubic pieces with the correct speed at both ends, enough to keep the error below
+`MAX_CURVE_ERROR`. For a distance d, the error is at most 360 d / (384 n^4).
 """
 
 from collections.abc import Iterable, Iterator
@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 from lumen.motion.trajectories import Bezier, JointTrack, Polynomial, Segment
 
 MOTION_CYCLE = 0.02
-"""ALMotion's period [s]."""
+"""The period of ALMotion's control cycle [s]."""
 MAX_CURVE_ERROR = 1e-3
 """The maximum deviation of a joint from a minimum-jerk track [rad]."""
 MIN_PIECE_DURATION = 2 * MOTION_CYCLE
@@ -25,12 +25,12 @@ class CubicPiece(NamedTuple):
     """A cubic Bezier curve of the given duration [s], whose points have the angles `a0` to `a3` [rad]."""
 
     start: float
-    """The time of the curve's beginning [s]."""
+    """The curve's start time [s]."""
     duration: float
     t1: float
-    """The time of the first inner point from the curve's beginning [s]."""
+    """The time from the curve's start to the first inner point [s]."""
     t2: float
-    """The time of the second inner point from the curve's beginning [s]."""
+    """The time from the curve's start to the second inner point [s]."""
     a0: float
     a1: float
     a2: float
@@ -41,7 +41,7 @@ class BezierCurves(NamedTuple):
     """The three arguments of `angleInterpolationBezier`."""
 
     names: list[str]
-    """The joints."""
+    """The joints' names."""
     times: list[list[float]]
     """The times of each joint's keys [s]."""
     controls: list[list[list[Any]]]
@@ -51,9 +51,9 @@ class BezierCurves(NamedTuple):
 def curves(tracks: Iterable[JointTrack]) -> BezierCurves:
     """Return these tracks in NAOqi's form.
 
-    NAOqi begins each at the joint's present angle, so the track should begin there too. The handle that NAOqi gives to
-    that beginning is not documented. Therefore the first key lies on the track one cycle of ALMotion later, and the
-    movement before it is too short to be visible.
+    NAOqi begins each track at the joint's present angle, so the track should begin there too. NAOqi's handle for that
+    first point is not documented. Therefore the first key lies on the track one ALMotion cycle later, and the movement
+    before that key is too short to be visible.
     """
     found = BezierCurves([], [], [])
     for track in tracks:
@@ -100,7 +100,7 @@ def _slope(c: Polynomial, u: float) -> float:
 
 
 def _split(piece: CubicPiece) -> list[CubicPiece]:
-    """Return the piece cut one cycle after its beginning, by de Casteljau's algorithm; uncut if it is too short."""
+    """Return the piece split one ALMotion cycle after its start, by de Casteljau's algorithm; whole if too short."""
     if piece.duration < MIN_PIECE_DURATION:
         return [piece]
     u = _reached(piece, MOTION_CYCLE)
@@ -126,7 +126,7 @@ def _halves(u: float, p0: float, p1: float, p2: float, p3: float) -> tuple[Contr
 
 
 def _reached(piece: CubicPiece, time: float) -> float:
-    """Return the parameter from 0 to 1 at which the curve reaches that time [s] after its beginning, by bisection."""
+    """Return the parameter from 0 to 1 at which the curve reaches `time` [s] after its start, by bisection."""
     low, high = 0.0, 1.0
     for _ in range(50):
         u = (low + high) / 2

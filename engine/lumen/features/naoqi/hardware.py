@@ -1,4 +1,4 @@
-"""NAOqi's names of the devices of NAO and Pepper. Those of Pepper have not been tested on a robot."""
+"""NAOqi's device names for NAO and Pepper. Pepper's names have not been tested on a robot."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -22,32 +22,32 @@ FORCE_SENSORS = tuple(
 
 
 def device(name: str) -> str:
-    """Return ALMemory's key of a sensor's value."""
+    """Return ALMemory's key for a sensor's value."""
     return _DEVICE.format(f"{name}/Sensor")
 
 
 @dataclass(frozen=True)
 class Hardware:
-    """The devices of one kind of robot."""
+    """The devices and abilities of one robot type."""
 
     touch: Mapping[str, tuple[str, ...]]
-    """The devices behind each tactile sensor."""
+    """The devices of each tactile sensor."""
     sonars: tuple[str, str]
-    """The devices of the left and the right sonar."""
+    """The devices of the left and right sonars."""
     inertial: str
-    """The device of the inertial unit."""
+    """The inertial unit's device."""
     force: tuple[str, ...]
     """The force sensors under the soles."""
     lights: Mapping[str, str]
-    """ALLeds' groups by Lumen's groups of lights."""
+    """ALLeds' groups by Lumen's light names."""
     breathing: tuple[str, ...]
-    """The chains, besides the head, that NAOqi's breathing moves."""
+    """The joint chains, besides the head, that NAOqi's breathing moves."""
     edge: str
-    """The name of the part that leaves the stage first, for messages."""
+    """The body part that leaves the stage first, as messages name it."""
     reach: float
-    """The distance of that part from the robot's position [m]."""
+    """The distance from the robot's position to `edge` [m]."""
     gets_up: bool
-    """True if the robot gets up by itself after a fall."""
+    """Whether the robot can get up by itself after a fall."""
 
 
 _HEAD_TOUCH = {
@@ -64,7 +64,7 @@ _FACE_LIGHTS = {
     "ears": "EarLeds", "left_ear": "LeftEarLeds", "right_ear": "RightEarLeds",
     "chest": "ChestLeds",
 }  # fmt: skip
-"""ALLeds' groups. The ears of both robots, and NAO's head, are only blue: they show the blue part of a colour."""
+"""ALLeds' groups for both robots. The ears, and NAO's head, have only blue LEDs, which show a colour's blue value."""
 
 NAO = Hardware(
     touch={
@@ -105,7 +105,7 @@ PEPPER = Hardware(
     reach=0.25,
     gets_up=False,
 )
-"""Pepper's only sonar that points ahead serves as both the left and the right one."""
+"""Pepper's only forward sonar is used for both left and right."""
 
 
 def hardware_of(body: Body) -> Hardware:

@@ -1,6 +1,7 @@
 """Lifelike movements of a real NAO or Pepper.
 
-Lumen moves the joints by `ALMotion.setAngles` and lights the eyes; NAOqi breathes and blinks if the style selects it.
+Lumen moves the joints with `ALMotion.setAngles` and lights the eyes; NAOqi breathes and blinks if the style selects
+that.
 """
 
 from collections.abc import Callable, Collection, Mapping
@@ -23,9 +24,9 @@ from lumen.robot.command_table import speech_duration
 from lumen.robot.life_layer import LifeLayer
 
 OURS_AFTER = 0.5
-"""The time after a light command in which the eyes stay untouched [s].
+"""The time after a light command for which life leaves the eyes unchanged [s].
 
-The command's calls may still be on their way.
+The command's calls may still be in progress.
 """
 
 UNLIT = "white"
@@ -42,7 +43,7 @@ class NaoqiEyes:
         self._sent = NaoqiCall()
 
     def begins(self, command: RobotCommand, now: float) -> None:
-        """Note that a command begins that may light the eyes; the colour `white` returns them to this class."""
+        """Record the eye colours of a new command; the colour `white` returns control of the eyes to this class."""
         match command:
             case Leds(colours, seconds):
                 self._light(colours, now + seconds)
@@ -51,7 +52,7 @@ class NaoqiEyes:
                     self._light(cue.value, now + cue.time)
 
     def wear(self, colour: str, now: float) -> None:
-        """Show this colour in the eyes, `off` for a blink, white for an empty text, unless a command has lit them.
+        """Show this colour in the eyes unless a command has lit them; `off` is a blink, an empty text white.
 
         A colour is skipped while NAOqi has not answered the last call.
         """
@@ -69,21 +70,21 @@ class NaoqiEyes:
 
 
 SEND_PERIOD = 0.1
-"""The time between two updates of the joints' goals [s]; NAOqi interpolates in between."""
+"""The time between two updates of the joints' goals [s]; NAOqi interpolates between goals."""
 
 SPEED = 0.3
-"""The share of their maximum speed at which joints move to these goals."""
+"""The share of their maximum speed at which joints move to these goals, from 0 to 1."""
 
 REST_AFTER = 0.5
-"""The time without commands after which the robot moves by itself again [s]: NAOqi finishes late."""
+"""The time after a command before lifelike movements begin again [s], because NAOqi finishes late."""
 
 
 class NaoqiLife:
-    """Adds the life layer's offsets to the angles of joints after the last command.
+    """Adds the life layer's offsets to the joints' angles after the last command.
 
     Legs stay still unless the style has `naoqi: [legs]`, because swaying has not been tested on a real robot. The robot
-    makes these movements from its first command to stand until it rests. `owner` returns the id of the command that
-    moves a part, empty if none does.
+    makes these movements from a command to wake or take a posture until a command to rest. `owner` returns the id of the
+    command that moves a body part; empty for none.
     """
 
     def __init__(self, session: NaoqiSession, owner: Callable[[str], str], body: Body) -> None:
@@ -100,15 +101,15 @@ class NaoqiLife:
 
     @property
     def body_language(self) -> bool:
-        """True if NAOqi makes the gestures of speech."""
+        """Whether NAOqi makes the gestures of speech."""
         return self._has(NAOQI_SPEECH, "ALAnimatedSpeech")
 
     def live(self, command: Live) -> None:
-        """Begin a style of life; if NAOqi makes the gestures of speech, Lumen makes none."""
+        """Begin a style of life; if it selects NAOqi's gestures of speech, Lumen makes no gestures."""
         self.layer.live(replace(command, gestures=NO_GESTURES) if NAOQI_SPEECH in command.style.naoqi else command)
 
     def begins(self, command: RobotCommand, now: float) -> None:
-        """Note that a command begins, which may make the robot stand, rest or speak, or light its eyes."""
+        """Adapt the movements to a new command that makes the robot stand, rest or speak, or lights its eyes."""
         self._eyes.begins(command, now)
         match command:
             case Rest():
@@ -120,23 +121,23 @@ class NaoqiLife:
                 self.layer.say(command, speech_duration(text), now)
 
     def lose(self) -> None:
-        """Forget NAOqi's state: it may have been restarted since, and then neither breathes nor blinks."""
+        """Forget NAOqi's state, because a restarted NAOqi neither breathes nor blinks."""
         self._breathes = self._blinks = False
         self._sent = NaoqiCall()
 
     def led(self, angles: Mapping[str, float], now: float) -> None:
-        """Note that joints are aimed at these angles [rad], from which their offsets now count; see `alive`."""
+        """Record that joints are aimed at these angles [rad], to which `alive` and `tick` add offsets."""
         self.layer.led(angles, now)
         self._stands |= {joint: angle for joint, angle in angles.items() if joint in self._stands}
 
     def alive(self, angles: Mapping[str, float]) -> dict[str, float]:
-        """Return the angles [rad] to send for joints that are aimed at `angles`: with their offsets added."""
+        """Return the angles [rad] to send for joints aimed at `angles`, including the joints' offsets."""
         return {joint: angle + self.layer.offsets.get(joint, 0.0) for joint, angle in angles.items()}
 
     def tick(self, now: float, heat: Mapping[str, float], percentage: float) -> None:
-        """Send the joints' goals at `now` [s], unless NAOqi is still busy with the last.
+        """Send the eyes' colour and the joints' goals at `now` [s], unless a command runs or NAOqi is still busy.
 
-        `heat` has the motors' temperatures [degrees Celsius], `percentage` is the battery's charge.
+        `heat` has the motors' temperatures by joint [degrees Celsius], `percentage` is the battery's charge [%].
         """
         free = frozenset(part for part in WHOLE_BODY if not self._owner(part))
         if not self._owner(VOICE):
@@ -174,13 +175,13 @@ class NaoqiLife:
             self._sent = self._post("ALMotion", "setAngles", list(goals), list(goals.values()), SPEED)
 
     def _look(self, now: float) -> None:
-        """Send the eyes' present colour; blinks are left to NAOqi if the style has NAOqi's."""
+        """Send the eyes' present colour, but no blinks while NAOqi makes its own."""
         colour = self.layer.eyes(now)
         if self._session.has("ALLeds") and not (colour == "off" and self._blinks):
             self._eyes.wear(colour, now)
 
     def _switch(self, *, lives: bool) -> None:
-        """Switch NAOqi's breathing and blinking by the style; it breathes only if `lives`, while no command runs."""
+        """Switch NAOqi's breathing and blinking as the style selects; breathing also requires `lives`."""
         breathes = lives and NAOQI_BREATHING in self.layer.style.naoqi
         if breathes != self._breathes:
             self._breathes = breathes
@@ -195,7 +196,7 @@ class NaoqiLife:
         return part in self.layer.style.naoqi and self._session.has(service)
 
     def _known(self) -> bool:
-        """Return True if the joints' angles without offsets are known; request them if not."""
+        """Return whether the joints' angles without offsets are known; if not, request them."""
         if self._stands:
             return True
         if self._asked is None:
@@ -208,5 +209,5 @@ class NaoqiLife:
         return bool(self._stands)
 
     def _ours(self, free: Collection[str]) -> Collection[str]:
-        """Return the parts that Lumen moves: only the head while NAOqi breathes."""
+        """Return the `free` body parts that Lumen moves: only the head while NAOqi breathes."""
         return {HEAD} & set(free) if self._breathes else free

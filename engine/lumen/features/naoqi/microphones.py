@@ -1,4 +1,4 @@
-"""The robot's microphones: NAOqi sends their sound to a service of Lumen's until the recording is complete."""
+"""The robot's microphones, whose sound NAOqi sends to Lumen's service until the recording is complete."""
 
 from collections.abc import Callable
 from typing import Any
@@ -13,28 +13,31 @@ from lumen.robot.sense_codec import RECORDING_RATE, recording_body
 
 AUDIO_DEVICE, MICROPHONE_SERVICE = "ALAudioDevice", "LumenMicrophones"
 FRONT_MICROPHONE, INTERLEAVED = 3, 0
-"""The microphone that points at the visitor: ALAudioDevice offers a single one at 16 kHz, all four only at 48 kHz."""
+"""NAOqi's numbers for the front microphone and interleaved samples.
+
+At 16 kHz, ALAudioDevice records only a single microphone; it records all four only at 48 kHz.
+"""
 RECORDING_GRACE = 3.0
-"""The time beyond the recording's duration in which its sound must arrive [s]."""
+"""The time after the recording's duration within which its sound must arrive [s]."""
 
 
 class Microphones:
-    """Records from ALAudioDevice, one recording at a time; `notice` receives an event for each."""
+    """Records from ALAudioDevice, one recording at a time; `notice` receives an event for each complete recording."""
 
     def __init__(self, session: NaoqiSession, notice: EventSink, clock: Callable[[], float]) -> None:
         self._session, self._notice, self._clock = session, notice, clock
         self._heard, self._wanted = bytearray(), 0
 
     def begin(self, command: Record) -> CallSequence:
-        """Return the activity of a recording. Raises SenseError if there is no microphone."""
+        """Return the activity of a recording. Raises SenseError if the robot has no ALAudioDevice."""
         if not self._session.has(AUDIO_DEVICE):
             raise SenseError(f"this robot has no {AUDIO_DEVICE}")
         return CallSequence(self._listen(command), self._hush)
 
     def _listen(self, command: Record) -> CallSteps:
-        """Record: NAOqi calls `processRemote` of Lumen's service with sound about six times a second.
+        """Record sound, with which NAOqi calls `processRemote` of Lumen's service about six times a second.
 
-        Sound that arrives before the recording begins is discarded.
+        Discard sound from before the recording. Raises RobotFailedError if the sound does not arrive in time.
         """
         yield self._session.serve(MICROPHONE_SERVICE, self._service)
         yield self._session.post(
@@ -58,7 +61,7 @@ class Microphones:
         return [self._session.post(AUDIO_DEVICE, "unsubscribe", MICROPHONE_SERVICE)]
 
     def _service(self, qi: Any) -> object:
-        """Return the service that NAOqi calls, on a thread of qi's, one call at a time."""
+        """Return the service that NAOqi calls on qi's thread, one call at a time."""
         microphones = self
 
         class Listener:
@@ -69,13 +72,13 @@ class Microphones:
         return Listener()
 
     def hear(self, samples: bytes) -> None:
-        """Add samples of 16 bits, little-endian, as long as more are wanted."""
+        """Add 16-bit little-endian samples while the recording is incomplete."""
         if len(self._heard) < self._wanted:
             self._heard += samples
 
 
 class _Raw:
-    """qi's signature of bytes; without it they arrive as text."""
+    """qi's signature for bytes; without it, bytes arrive as text."""
 
     def __str__(self) -> str:
         return "r"

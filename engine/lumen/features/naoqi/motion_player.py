@@ -1,4 +1,4 @@
-"""Motions: checked, begun from the robot's present angles, and sent to NAOqi as one call."""
+"""Checks motions, begins them at the robot's present angles, and sends each to NAOqi as one call."""
 
 from collections.abc import Callable, Collection, Mapping, Sequence
 
@@ -17,7 +17,7 @@ from lumen.robot.joint_ways import APPROACH_TIME, RECOVERY_TIME, away, begun_fro
 
 
 class CuePlayer:
-    """Plays the cues of a motion, each at its time; `post` lights the LEDs, `notice` receives words and sounds."""
+    """Plays a motion's cues at their times; `post` lights the LEDs, `notice` receives words and sounds."""
 
     def __init__(self, post: PostCall, motion: MotionDefinition, body: Body, notice: EventSink) -> None:
         self._post, self._body = post, body
@@ -26,7 +26,7 @@ class CuePlayer:
         self._begin = 0.0
 
     def begin(self, now: float) -> None:
-        """Note that the motion begins at `now` [s]; the times of its cues count from then."""
+        """Set the motion's start to `now` [s]; cue times are relative to it."""
         self._begin = now
 
     def __call__(self, now: float) -> None:
@@ -37,11 +37,11 @@ class CuePlayer:
 
 
 START_POSTURE_TOLERANCE = 0.1
-"""Joints nearer than this to the motion's starting posture are not moved there first [rad]."""
+"""The distance from the starting posture above which the joints first move there [rad]."""
 
 
 class MotionPlayer:
-    """Begins motions by calls of NAOqi.
+    """Begins motions.
 
     `post` calls NAOqi, `notice` receives a motion's words and sounds, and `clock` returns the time [s].
     """
@@ -52,7 +52,7 @@ class MotionPlayer:
     def begin(self, motion: MotionDefinition, owned: Collection[str]) -> CallSequence:
         """Return the activity of a motion.
 
-        Joints of the parts `owned` may be moved to the motion's starting posture before and after it.
+        Joints of the body parts `owned` move to the starting posture before the motion if necessary, and after an abort.
         """
         shared = self._body.shared
         home = {name: angle for name, angle in home_angles(motion, self._body, owned).items() if name not in shared}
@@ -83,7 +83,7 @@ class MotionPlayer:
         beside(now)
 
     def _ready(self, motion: MotionDefinition) -> CallSteps:
-        """Raise RobotError if the motors are off, or if the robot is not in a posture to begin in."""
+        """Raise RobotRefusedError if the motors are off, or the motion begins upright but the robot is not upright."""
         if not (yield self._post("ALMotion", "robotIsWakeUp")):
             raise RobotRefusedError("the motors are off: `wake` first")
         if motion.start in UPRIGHT:
@@ -94,14 +94,14 @@ class MotionPlayer:
                 )
 
     def _stand(self, joints: list[str]) -> CallSteps:
-        """Request and return the commanded angles [rad] of these joints by name; NAOqi begins each motion from them."""
+        """Return the commanded angles [rad] by joint, from which NAOqi begins each motion."""
         if not joints:
             return {}
         angles = yield self._post("ALMotion", "getAngles", joints, False)
         return dict(zip(joints, angles, strict=True))
 
     def _recover(self, home: Mapping[str, float]) -> CallSteps:
-        """Move the joints back to the starting posture: a killed motion stops on its way."""
+        """Move the joints back to the starting posture, because a killed motion stops midway."""
         if home:
             here = yield from self._stand(list(home))
             yield self._go(home, here, RECOVERY_TIME)
@@ -113,7 +113,7 @@ class MotionPlayer:
         return self._post("ALMotion", "angleInterpolation", list(goal), [[a] for a in goal.values()], times, True)
 
     def _inside(self, motion: MotionDefinition, here: Mapping[str, float]) -> dict[str, float]:
-        """Return each joint's present angle, within its limits; a joint without a motor has its leader's angle."""
+        """Return each joint's present angle [rad], limited to its range; joints that share a motor have its angle."""
         found = {}
         for joint in motion.tracks:
             limit = self._body.joints[joint]
@@ -121,6 +121,6 @@ class MotionPlayer:
         return found
 
     def _driven(self, tracks: Sequence[JointTrack]) -> list[JointTrack]:
-        """Return the tracks by the names of motors; if a motor has two tracks, its own joint's track counts."""
+        """Return the tracks under their motors' names; of two tracks for a motor, use that of its own joint."""
         shared, moved = self._body.shared, {track.joint for track in tracks}
         return [t._replace(joint=shared.get(t.joint, t.joint)) for t in tracks if shared.get(t.joint) not in moved]

@@ -1,4 +1,4 @@
-"""Events that NAOqi raises by itself, and the thresholds of battery and heat."""
+"""Events that NAOqi raises, and alerts for a low battery and hot motors."""
 
 import logging
 from collections import deque
@@ -13,34 +13,34 @@ from lumen.ports import Tactile
 
 FALLEN = "robotHasFallen"
 FALLING = ("robotIsFalling", "ALMotion/RobotIsFalling")
-"""The event at the beginning of a fall, by its names in NAOqi 2.1 and 2.8."""
+"""The names in NAOqi 2.1 and 2.8 for the event at the beginning of a fall."""
 
 SOUND = "ALSoundLocalization/SoundLocated"
 SURE_SOUND = 0.5
-"""The minimum confidence of a sound's direction that is accepted, from 0 to 1."""
+"""The minimum confidence, from 0 to 1, at which a sound's direction is accepted."""
 
 FULL = "BatteryFullChargedFlagChanged"
 
 BATTERY_LOW, BATTERY_RECOVERED = 20, 25
-"""The charges [%] at which the robot raises `battery.low`, and may raise it again."""
+"""The charges [%] at which `battery.low` is raised, and after which it can be raised again."""
 MOTOR_HOT, MOTOR_COOLED = 75.0, 70.0
-"""The temperatures [degrees Celsius] at which a motor raises `motors.hot`, and may raise it again."""
+"""The temperatures [degrees Celsius] at which `motors.hot` is raised, and after which it can be raised again."""
 
 EVENT_SETTLE_TIME = 0.3
-"""A sensor's reading overrides an event if it is newer by more than this [s]."""
+"""The time after an event from which a sensor's reading overrides that event [s]."""
 
 _log = logging.getLogger(__name__)
 
 
 def event_of(sensor: str) -> str:
-    """Return ALMemory's name of the event of a tactile sensor."""
+    """Return ALMemory's event name for a tactile sensor."""
     return f"{sensor}{'Pressed' if sensor.endswith(('Bumper', 'Button')) else 'Touched'}"
 
 
 class NaoqiEvents:
-    """Receives touches, falls and a full battery on qi's threads; `take` passes them to the robot's thread.
+    """Receives touches, falls, sounds and a full battery on qi's threads, and returns them to the robot's thread.
 
-    `pressed` has the state of every tactile sensor, `heard` counts the events received.
+    `pressed` has the state of every tactile sensor; `heard` counts the received events.
     """
 
     def __init__(self, sensors: Iterable[str]) -> None:
@@ -69,18 +69,18 @@ class NaoqiEvents:
                 _log.warning("the robot does not look towards sounds: %s", error)
 
     def sounds(self) -> list[tuple[float, float]]:
-        """Return the direction of the newest sound, if any, and forget it.
+        """Return the newest sound's direction and forget it; empty if no sound is new.
 
-        The direction is two angles [rad]: to the left of and below the head's direction.
+        The direction is two angles [rad], to the left of and below the head's direction.
         """
         found = list(self._sounds)
         self._sounds.clear()
         return found
 
     def take(self, now: float, felt: Tactile | None) -> list[tuple[str, bool]]:
-        """Return the changes up to `now` [s] of sensors, falls and the battery, each as a name and its new value.
+        """Return the changes of sensors, falls and the battery up to `now` [s], each as a name and its new value.
 
-        Two events of a sensor may overtake each other; newer readings in `felt` correct its state.
+        A sensor's events may arrive in the wrong order; newer readings in `felt` correct the sensor's state.
         """
         if felt:
             for name, value in zip(felt.names, felt.values, strict=True):
@@ -96,7 +96,7 @@ class NaoqiEvents:
         return changed
 
     def _locate(self, value: Any) -> None:
-        """Process `[[s, us], [azimuth, elevation, confidence, energy], head's place, …]`, relative to the head."""
+        """Process `[[s, us], [azimuth, elevation, confidence, energy], head's place, …]`, with angles from the head."""
         try:
             azimuth, elevation, confidence = map(float, value[1][:3])
         except (TypeError, ValueError, IndexError, KeyError):
@@ -111,9 +111,9 @@ class NaoqiEvents:
 
 
 class HealthAlerts:
-    """Returns the events `battery.low` and `motors.hot` once.
+    """Returns the events `battery.low` and `motors.hot`.
 
-    Each is returned again only after the battery or the motor has recovered.
+    Each event is returned again only after the battery or the motor has recovered.
     """
 
     def __init__(self) -> None:
@@ -121,7 +121,7 @@ class HealthAlerts:
         self._hot: set[str] = set()
 
     def battery(self, percentage: int, now: float) -> list[Event]:
-        """Return the event of a charge [%] at `now` [s], if any."""
+        """Return `battery.low` if the charge `percentage` [%] has become low at `now` [s], else an empty list."""
         self._low = self._low and percentage < BATTERY_RECOVERED
         if self._low or percentage > BATTERY_LOW:
             return []

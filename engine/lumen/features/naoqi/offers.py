@@ -1,4 +1,4 @@
-"""A real NAO or Pepper and its hall. `qi` is imported only when a connection is made."""
+"""A real NAO or Pepper and its hall. `qi` is imported only when a session is created."""
 
 from lumen.errors import UsageError
 from lumen.features.naoqi.robot import NaoqiRobot
@@ -6,7 +6,7 @@ from lumen.language.stories import Visitor
 
 
 class PhysicalHall:
-    """A `Hall` with real visitors: typed words are heard, and only a visual module sees people."""
+    """A `Hall` with real visitors: the operator types words for the robot, and only a visual module sees people."""
 
     def place(self, visitor: Visitor | None) -> None:
         """Do nothing: real visitors place themselves."""
@@ -16,14 +16,14 @@ class PhysicalHall:
         return None
 
     def touch(self, sensor: str, pressed: bool) -> None:
-        """Raise UsageError: a real robot is touched by hand."""
+        """Raise UsageError, because a real robot is touched by hand."""
         raise UsageError(f"touch `{sensor}` of a real robot by hand")
 
     def sound(self) -> None:
         """Do nothing: typed words make no sound."""
 
     def plug(self, plugged: bool) -> None:
-        """Raise UsageError: a real robot is plugged in by hand."""
+        """Raise UsageError, because a real robot is plugged in by hand."""
         raise UsageError("plug in a real robot by hand")
 
 

@@ -23,10 +23,10 @@ OPTIONAL_SERVICES = {
     "ALAutonomousLife": "make sure that no other program moves it",
     "ALSystem": "its version is unknown",
 }
-"""Services that an exhibition can do without, and what is missing without them."""
+"""The optional services, each with the effect of its absence."""
 OLDEST_NAOQI, TESTED_NAOQI = (2, 1), ((2, 1), (2, 8))
 AUTONOMOUS_LIFE_TIMEOUT = 10.0
-"""The maximum time that autonomous life may take to end [s]: it lets the robot finish its present activity."""
+"""The time limit for the end of autonomous life [s], which first finishes the robot's present activity."""
 
 _log = logging.getLogger(__name__)
 
@@ -34,8 +34,8 @@ _log = logging.getLogger(__name__)
 def prepare(session: NaoqiSession, body: Body, *, again: bool) -> None:
     """Take the robot over: end autonomous life and switch on the reflexes.
 
-    After a lost connection (`again`), old commands are ended too. Raises RobotError if the robot lacks joints of this
-    body, or its NAOqi is too old.
+    After a lost connection (`again`), also end old commands. Raises RobotError if the robot lacks a required service or
+    a joint of this body, or if its NAOqi is too old.
     """
     _find(session)
     _check_version(session)
@@ -48,7 +48,7 @@ def prepare(session: NaoqiSession, body: Body, *, again: bool) -> None:
 
 
 def halt(session: NaoqiSession, joints: Sequence[str]) -> None:
-    """End a walk after its step, motions of these joints at once, and speech; the robot keeps its balance."""
+    """Stop a walk after its current step, these joints' motions, and speech; the robot keeps its balance."""
     session.post("ALMotion", "stopMove").wait(2.0)
     session.post("ALMotion", "killTasksUsingResources", list(joints)).wait(1.0)
     if session.has("ALTextToSpeech"):
@@ -80,7 +80,7 @@ def _check_version(session: NaoqiSession) -> None:
 
 
 def _check_joints(session: NaoqiSession, body: Body) -> None:
-    """Raise RobotModelError if the robot lacks a joint of the body, as a model without hands does."""
+    """Raise RobotModelError if the robot lacks a joint of the body, for example on a model without hands."""
     names = list(map(str, session.request("ALMotion", "getBodyNames", "Body")))
     for joint in body.joints:
         if joint not in names:
@@ -90,9 +90,9 @@ def _check_joints(session: NaoqiSession, body: Body) -> None:
 
 
 def _protect(session: NaoqiSession) -> None:
-    """Switch on NAOqi's reflexes: the fall manager, the distance to obstacles, and adaptive stiffness.
+    """Switch on NAOqi's reflexes: the fall manager, collision protection, and adaptive stiffness.
 
-    Failures are logged.
+    Failures are only logged.
     """
     for method, *arguments in (
         ("setFallManagerEnabled", True),

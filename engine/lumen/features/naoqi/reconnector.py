@@ -1,4 +1,4 @@
-"""Keeps the connection: it connects again when the connection breaks, and reports the loss and the return."""
+"""Restores the connection when it breaks, and reports its loss and its return."""
 
 import logging
 import threading
@@ -12,7 +12,7 @@ from lumen.features.naoqi.session import NaoqiSession
 from lumen.upkeep.threads import WatchedThread
 
 FIRST_RETRY_DELAY, MAX_RETRY_DELAY = 0.5, 10.0
-"""The wait before the first attempt to reconnect, and the longest wait [s]; each is twice as long as the last."""
+"""The wait before the first attempt to reconnect, and the maximum wait [s]; the wait doubles each time."""
 
 _log = logging.getLogger(__name__)
 
@@ -23,9 +23,9 @@ class ConnectionChange(NamedTuple):
     name: str
     """`robot.lost` or `robot.back`."""
     seconds: float
-    """The time for which the robot was away [s]; 0 if it was lost."""
+    """The time for which the robot was away [s]; 0 for `robot.lost`."""
     reason: str
-    """Why the connection was lost; empty if the robot is back."""
+    """The reason for the loss; empty for `robot.back`."""
 
 
 class Reconnector:
@@ -46,7 +46,7 @@ class Reconnector:
     def open(self) -> None:
         """Connect for the first time, and start the thread that reconnects.
 
-        Raises RobotError if connecting is impossible.
+        Raises RobotError if the robot can't be connected or prepared.
         """
         try:
             self._session.open()
@@ -58,7 +58,7 @@ class Reconnector:
         self._thread.start()
 
     def lose(self, reason: str) -> None:
-        """Note that the connection broke; called on any thread."""
+        """Record and log that the connection broke. Any thread may call this."""
         self._lost_at = time.monotonic()
         self._changes.append(ConnectionChange("robot.lost", 0.0, reason))
         if not self._ending.is_set():
@@ -66,7 +66,7 @@ class Reconnector:
         self._broken.set()
 
     def changes(self) -> list[ConnectionChange]:
-        """Return the changes since the last call."""
+        """Return the connection's changes since the last call."""
         return [self._changes.popleft() for _ in range(len(self._changes))]
 
     def close(self) -> None:
@@ -95,7 +95,7 @@ class Reconnector:
             self._session.close()
             _log.info("the robot is still unreachable: %s", error)
             return
-        except Exception:  # a fault of ours must not end the attempts
+        except Exception:  # a fault in Lumen must not end the attempts
             self._session.close()
             _log.exception("the robot could not be reached")
             return

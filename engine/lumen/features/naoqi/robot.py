@@ -29,10 +29,10 @@ from lumen.robot.skill_runner import SkillRunner
 class NaoqiRobot(ExecutingRobot):
     """The NAO or Pepper at `url`, in real time: `clock` returns the time of its answers, events and readings [s].
 
-    Connecting takes the robot over: autonomous life ends, its reflexes stay on. When the connection breaks, all
-    commands fail and `robot.lost` is raised; `robot.back` follows once it is connected again. `stage` limits its walks,
-    relative to its place at the first connection. `patience` is the maximum wait for an answer [s]. Raises RobotError
-    if there is no robot, or one of another kind than the body.
+    Connecting ends autonomous life and switches the reflexes on. When the connection breaks, all commands fail and
+    `robot.lost` is raised; after reconnecting, `robot.back` is raised. `stage` limits walks, relative to the robot's
+    position at the first connection. `patience` is the maximum wait for an answer [s]. Raises RobotError if no robot
+    answers, or if the robot does not match `body`.
     """
 
     def __init__(
@@ -93,11 +93,11 @@ class NaoqiRobot(ExecutingRobot):
         return events
 
     def read(self, sense: Sense) -> Reading | None:
-        """Return the newest reading of a sense, None if there is none."""
+        """Return the newest reading of a sense; None if no reading is available."""
         return self._senses[sense].newest
 
     def close(self) -> None:
-        """End commands, senses and threads; the robot stays as it stands."""
+        """End commands, senses and threads; the robot keeps its posture."""
         self._skill_runner.close()
         self._reconnector.close()
         for sense in self._senses.values():
@@ -117,7 +117,7 @@ class NaoqiRobot(ExecutingRobot):
         return activity
 
     def _take_over(self, again: bool) -> None:
-        """Prepare the robot after connecting; called on the connecting thread."""
+        """Prepare the robot after connecting, on the connecting thread; `again` is False only for the first time."""
         prepare(self._session, self.body, again=again)
         self._naoqi_events.listen(self._session)
         self._sensors.begin()
@@ -125,7 +125,7 @@ class NaoqiRobot(ExecutingRobot):
             self._area.meet(self._session.request("ALMotion", "getRobotPosition", True))
 
     def _feel(self, now: float) -> None:
-        """Process changes of the connection, touches, falls, sounds, battery and heat since the last tick."""
+        """Process new touches, falls and sounds, and changes of connection, battery and heat, since the last poll."""
         for name, seconds, reason in self._reconnector.changes():
             if name == "robot.lost":
                 self._executor.fail(f"the connection to the robot is lost: {reason}")
@@ -149,7 +149,7 @@ class NaoqiRobot(ExecutingRobot):
         self._events += self._alerts.motors(self._sensors.heat, now)
 
     def _fall(self, name: str, now: float) -> None:
-        """Make the commands fail when a fall begins; raise the event `fallen` once the fall is over."""
+        """Make all commands fail; after the fall (`name` is FALLEN), also raise the event `fallen`."""
         self._skills.fallen = True
         self._executor.fail("the robot fell", fallen=True)
         if name == FALLEN:
@@ -157,7 +157,7 @@ class NaoqiRobot(ExecutingRobot):
             self._events.append(Event("fallen", {}, now))
 
     def _turn(self) -> None:
-        """Send the newest aim of joints that no command owns, unless NAOqi is still busy with the last."""
+        """Send the newest aim for joints that no command owns, unless NAOqi is still busy with the last aim."""
         aim = self._aim
         if aim is None or not self._aimed.done or self._skills.fallen:
             return
@@ -168,7 +168,7 @@ class NaoqiRobot(ExecutingRobot):
             self._aimed = self._session.post("ALMotion", "setAngles", list(inside), list(inside.values()), aim.speed)
 
     def _live(self, now: float) -> None:
-        """Add small lifelike movements to joints that nothing else moves."""
+        """Add small lifelike movements to joints that no command moves."""
         battery = self._senses[Sense.BATTERY].newest
         percentage = battery.percentage if isinstance(battery, Battery) else 100
         if self._session.ready and not self._skills.fallen:

@@ -1,4 +1,4 @@
-"""The reading of the robot's senses, each by a thread of its own while commands run."""
+"""Reads each of the robot's senses on a separate thread while commands run."""
 
 import logging
 import threading
@@ -16,9 +16,9 @@ _log = logging.getLogger(__name__)
 
 
 class SensePoller:
-    """Reads one sense every `period` [s] by `acquire`; `newest` is the last reading, None if it failed.
+    """Reads one sense every `period` [s] with `acquire`; `newest` is the last reading, None after a failure.
 
-    A failure affects only that sense: it is logged once for each reason, and the sense is read again every second.
+    A failure affects only this sense: each new reason is logged, and reading is retried every second.
     """
 
     def __init__(self, name: str, session: NaoqiSession, acquire: Callable[[], Reading], period: float) -> None:
@@ -35,9 +35,9 @@ class SensePoller:
         self._thread.start()
 
     def fresh(self, timeout: float = 5.0) -> Reading | None:
-        """Return a reading that begins after this call; None if the last one failed.
+        """Return a reading that begins after this call; None if it failed.
 
-        If none comes within `timeout` [s], it is the newest reading.
+        After `timeout` [s], return the newest reading instead.
         """
         with self._changed:
             self._wanted = wanted = self._rounds + 1 + self._busy  # a round in progress began earlier
@@ -75,7 +75,7 @@ class SensePoller:
             if self._session.ready and str(error) != CONNECTION_LOST and not self._ending.is_set():
                 self._tell(str(error))
             return SENSE_RETRY_DELAY
-        except Exception as error:  # an answer of unexpected form: the next one may be valid
+        except Exception as error:  # an unexpected form of answer; the next answer may be valid
             self.newest = None
             _log.debug("a reading of the sense `%s` failed", self.name, exc_info=error)
             self._tell(repr(error))

@@ -1,4 +1,4 @@
-"""Readings of the senses: ALMemory's keys, and the camera."""
+"""Readings of the senses, from ALMemory, ALMotion and the camera."""
 
 import logging
 from collections import deque
@@ -21,9 +21,9 @@ TOP_CAMERA, RGB_COLOUR_SPACE = 0, 11
 RESOLUTIONS = {size: number for number, size in enumerate(SIZES)}
 DEFAULT_IMAGE_SIZE = Size(320, 240)
 CAMERA_RATE = 30
-"""The camera's images per second; the route's rate decides how many are fetched."""
+"""The camera's frame rate [1/s]; `NaoqiSensors.readers` has the rate at which frames are fetched."""
 CLOCK_OFFSET_FRAMES = 100
-"""Of this many recent images, the fastest to arrive shows the offset between the robot's clock and Lumen's."""
+"""The number of recent images whose shortest delay gives the offset between the robot's clock and Lumen's."""
 
 _log = logging.getLogger(__name__)
 
@@ -31,8 +31,8 @@ _log = logging.getLogger(__name__)
 class NaoqiSensors:
     """Reads a robot's senses; its methods wait for NAOqi, and raise RobotError if a sense can't be read.
 
-    `heat` are the motors' temperatures at the last reading of the joints [degrees Celsius]. `place` converts the result
-    of `ALMotion.getRobotPosition` to the place on the stage; `life` returns the offsets of lifelike movements.
+    `heat` has the motors' temperatures by joint at the last reading [degrees Celsius]. `place` converts the result of
+    `ALMotion.getRobotPosition` to the place on the stage; `life` returns the offsets of lifelike movements.
     """
 
     def __init__(
@@ -61,7 +61,7 @@ class NaoqiSensors:
         self._behind: deque[float] = deque(maxlen=CLOCK_OFFSET_FRAMES)
 
     def readers(self) -> Mapping[str, tuple[Callable[[], Reading], float]]:
-        """Return a function for each sense, and its period [s]: as often as the shipped routes publish the sense."""
+        """Return each sense's reading function and its period [s], which matches the rate of the shipped routes."""
         return {
             IMAGE: (self.image, 0.066),
             JOINT: (self.joints, 0.05),
@@ -71,7 +71,7 @@ class NaoqiSensors:
         }
 
     def begin(self) -> None:
-        """Forget the state of an earlier session, and end its subscriptions to the camera."""
+        """Forget an earlier session's state, end its camera subscriptions, and subscribe to the sonars."""
         self._handle, self._numb = "", False
         self._behind.clear()
         if self._session.has("ALVideoDevice"):
@@ -82,7 +82,7 @@ class NaoqiSensors:
             self._session.post("ALSonar", "subscribe", SUBSCRIBER_NAME)
 
     def end(self) -> None:
-        """End the subscriptions to camera and sonars."""
+        """End the subscriptions to the camera and the sonars."""
         self._let_go(0.5)
         if self._session.has("ALSonar"):
             self._session.post("ALSonar", "unsubscribe", SUBSCRIBER_NAME).wait(0.5)
@@ -96,9 +96,9 @@ class NaoqiSensors:
         return Joints(now, tuple(self._names), angles, stiffness, *felt)
 
     def sonar(self) -> Sonar:
-        """Return the distances left and right [m].
+        """Return the distances to obstacles on the left and right [m].
 
-        Raises SenseError if the robot has no sonars or they have no values.
+        Raises SenseError if the robot has no sonars or no sonar values.
         """
         if not self._session.has("ALSonar"):
             raise SenseError("this robot has no ALSonar")
@@ -109,7 +109,7 @@ class NaoqiSensors:
         return Sonar(now, float(left), float(right))
 
     def tactile(self) -> Tactile:
-        """Return the state of each tactile sensor: 1 if it is pressed, else 0."""
+        """Return each tactile sensor's state: 1 if it is pressed, else 0."""
         now = self._clock()
         found = iter(self._memory([key for keys in self._touches.values() for key in keys]))
         pressed = {name: sum(bool(next(found)) for _ in keys) > 0 for name, keys in self._touches.items()}
@@ -128,7 +128,7 @@ class NaoqiSensors:
         return Battery(now, percentage, plugged=bool(plugged) or bool(charging), charging=bool(charging))
 
     def image(self) -> Image:
-        """Return the newest image of the top camera, with its time on Lumen's clock [s]."""
+        """Return the top camera's newest image, with its time on Lumen's clock [s]."""
         if self._wanted != self._size:
             self._let_go()
             self._size = self._wanted
@@ -154,7 +154,8 @@ class NaoqiSensors:
     def _feelings(self) -> tuple[tuple[float, ...], dict[str, float], dict[str, float]]:
         """Return the motors' temperatures [degrees Celsius], the inertial unit's values and the forces under the soles.
 
-        Values that the robot lacks are left out; the temperatures are all there or empty.
+        Missing values are left out; temperatures are empty unless all are available. Everything is empty, and a warning
+        is logged once, if ALMemory can't be read.
         """
         try:
             found, motors = self._memory(self._felt), len(self._names)
@@ -172,7 +173,7 @@ class NaoqiSensors:
         return whole, _known(zip(INERTIAL, inertial, strict=True)), _known(zip(self._force, soles, strict=True))
 
     def _whereabouts(self) -> Whereabouts | None:
-        """Return the robot's place on the stage by its odometry; None if that is unavailable."""
+        """Return the robot's place on the stage by odometry; None if odometry is unavailable."""
         try:
             found = self._session.request("ALMotion", "getRobotPosition", True)
             return self._place([float(found[i]) for i in range(3)])
@@ -195,7 +196,7 @@ class NaoqiSensors:
         return self._handle
 
     def _pixels(self, found: Any) -> tuple[bytes, float]:
-        """Return the bytes of a frame, and its time on the robot's clock [s]."""
+        """Return a frame's bytes, and its time on the robot's clock [s]. Raises SenseError if it is invalid."""
         if not isinstance(found, Sequence) or len(found) < 7:
             raise SenseError("the camera gave no image: another program has unsubscribed it, or there is no camera")
         width, height, layers, _, seconds, microseconds, pixels = found[:7]
@@ -218,5 +219,5 @@ class NaoqiSensors:
 
 
 def _known(found: Iterable[tuple[str, Any]]) -> dict[str, float]:
-    """Return the values that are numbers, rounded to four decimals."""
+    """Return the numeric values by name, rounded to four decimals."""
     return {name: round(float(value), 4) for name, value in found if isinstance(value, int | float)}

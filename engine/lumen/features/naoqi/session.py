@@ -1,4 +1,4 @@
-"""The connection to NAOqi: calls that return at once, and calls that a separate thread may wait for."""
+"""The connection to NAOqi, with calls that return immediately, and calls that wait on a separate thread."""
 
 import re
 import threading
@@ -10,7 +10,7 @@ from lumen.upkeep.threads import WatchedThread
 
 NAOQI_PORT = 9559
 CALL_TIMEOUT = 2.0
-"""The time that a waiting call may take [s]; a robot that is silent for longer counts as lost."""
+"""The time limit of a waiting call [s]; a robot that does not answer in that time counts as lost."""
 CONNECT_TIMEOUT = 5.0
 MAX_ERROR_LENGTH = 200
 
@@ -27,9 +27,9 @@ _SCHEME = re.compile(r"^[a-z]+://")
 
 
 def qi() -> Any:
-    """Return the package `qi`, with its own logging switched off.
+    """Return the package `qi`, with its logging limited to fatal errors.
 
-    Raises RobotUnreachableError with instructions if it is missing.
+    Raises RobotUnreachableError, with installation instructions, if the package is missing.
     """
     try:
         import qi as package
@@ -54,7 +54,7 @@ def address(url: str) -> str:
 def plain(error: object) -> str:
     """Return NAOqi's error message as a single line, without the location in NAOqi's code.
 
-    It is `CONNECTION_LOST` for each of qi's messages about a lost connection.
+    Return `CONNECTION_LOST` for qi's messages about a lost connection.
     """
     text = " ".join(str(error).partition("\n\nAt:")[0].split())
     if text in _QI_CONNECTION_LOST:
@@ -63,34 +63,34 @@ def plain(error: object) -> str:
 
 
 def _error_of(reason: str) -> RobotError:
-    """Return the error to raise for a call that failed for this reason."""
+    """Return the error for a failed call: RobotLostError if the connection is lost, else RobotFailedError."""
     return RobotLostError(reason) if reason == CONNECTION_LOST else RobotFailedError(reason)
 
 
 class NaoqiCall:
-    """A call in progress; `result` raises RobotError if NAOqi raised or can't be reached any more."""
+    """A call in progress or ended; `result` raises RobotError if NAOqi raised an error or the connection is lost."""
 
     def __init__(self, future: Any = None, value: Any = None, error: str = "") -> None:
         self._future, self._value, self._error = future, value, error
 
     @property
     def done(self) -> bool:
-        """True if the call has ended."""
+        """Whether the call has ended."""
         return self._future is None or bool(self._future.isFinished())
 
     @property
     def failed(self) -> bool:
-        """True if the call has ended with an error."""
+        """Whether the call has ended with an error."""
         return bool(self._error) or (self._future is not None and self.done and bool(self._future.hasError()))
 
     def wait(self, seconds: float) -> bool:
-        """Wait for the call for at most `seconds`; return True if it has ended."""
+        """Wait for the call for at most `seconds`; return whether it has ended."""
         if self._future is not None:
             self._future.wait(int(1000 * seconds))
         return self.done
 
     def result(self) -> Any:
-        """Return the call's value. Raises RobotError if it failed."""
+        """Return the call's value, after waiting for the call to end. Raises RobotError if the call failed."""
         if self._error:
             raise _error_of(self._error)
         if self._future is None:
@@ -101,11 +101,11 @@ class NaoqiCall:
 
 
 class NaoqiSession:
-    """A session with the NAOqi at `url`, which can be opened again after it was lost.
+    """A session with NAOqi at `url`, which can be reopened after a lost connection.
 
-    `up` is True while it is connected, `ready` while the robot is prepared as well, and `pending` is the number of
-    calls in progress. `lost` is called with the reason each time the connection breaks, on any thread. A robot that
-    does not answer for longer than `patience` [s] is lost.
+    `ready` is True while the session is connected and the robot prepared; `pending` is the number of calls in progress.
+    `lost` is called with the reason each time the connection breaks, on any thread. If NAOqi does not answer a waiting
+    call within `patience` [s], the connection counts as lost.
     """
 
     def __init__(self, url: str, lost: Callable[[str], None] = lambda _: None, patience: float = CALL_TIMEOUT) -> None:
@@ -120,11 +120,11 @@ class NaoqiSession:
 
     @property
     def up(self) -> bool:
-        """True if the session is connected."""
+        """Whether the session is connected."""
         return self._session is not None
 
     def open(self) -> None:
-        """Connect. Raises RobotError if no robot answers."""
+        """Connect. Raises RobotUnreachableError if no robot answers."""
         session = self._qi.Session()
         future = session.connect(self.url, _async=True)
         future.wait(int(1000 * max(CONNECT_TIMEOUT, self._patience)))
@@ -141,7 +141,7 @@ class NaoqiSession:
         self._session = session
 
     def find(self, names: Iterable[str]) -> list[str]:
-        """Look up these services for later calls; return the names of those that the robot lacks."""
+        """Look up these services for later calls; return the names of missing services."""
         missing = []
         for name in names:
             future = self._session.service(name, _async=True)
@@ -153,11 +153,11 @@ class NaoqiSession:
         return missing
 
     def has(self, service: str) -> bool:
-        """Return True if the robot has that service and is connected."""
+        """Return whether the robot is connected and has that service."""
         return self.up and service in self._services
 
     def post(self, service: str, method: str, *arguments: Any) -> NaoqiCall:
-        """Call a method without waiting; the call's `result` raises its errors."""
+        """Call a method without waiting; errors are raised by the call's `result`."""
         proxy = self._services.get(service)
         if not self.up:
             return NaoqiCall(error=CONNECTION_LOST)
@@ -170,7 +170,7 @@ class NaoqiSession:
         return self._called(future)
 
     def serve(self, name: str, make: Callable[[Any], object]) -> NaoqiCall:
-        """Register a service of that name with NAOqi, once in each session; `make` receives the package `qi`."""
+        """Register the service that `make` builds with the package `qi`, only once per session unless that failed."""
         if not self.up:
             return NaoqiCall(error=CONNECTION_LOST)
         if name not in self._serving or self._serving[name].failed:
@@ -181,8 +181,8 @@ class NaoqiSession:
     def request(self, service: str, method: str, *arguments: Any, patience: float = 0.0) -> Any:
         """Call a method, wait for NAOqi's answer and return it. Only for threads that may wait.
 
-        The wait is at most the longer of `patience` and the session's [s]. Raises RobotError if the call fails; a robot
-        that does not answer in that time is lost.
+        The maximum wait is `patience` [s], but at least the session's patience. Raises RobotError if the call fails;
+        without an answer in that time, the connection counts as lost.
         """
         call, session, patience = self.post(service, method, *arguments), self._session, max(patience, self._patience)
         if not call.wait(patience):
@@ -192,7 +192,7 @@ class NaoqiSession:
         return call.result()
 
     def subscribe(self, event: str, heard: Callable[[Any], None]) -> Any:
-        """Call `heard`, on a thread of qi's, with the event's value each time that ALMemory raises that event.
+        """Call `heard` on qi's thread with the event's value each time ALMemory raises the event.
 
         The subscription ends when the returned object is released. Raises RobotError if ALMemory can't subscribe.
         """
@@ -204,7 +204,7 @@ class NaoqiSession:
         return subscriber
 
     def close(self) -> None:
-        """Disconnect, without a call of `lost`."""
+        """Disconnect without calling `lost`."""
         session, self._session, self.ready = self._session, None, False
         if session is not None:
             session.close()
@@ -224,5 +224,5 @@ class NaoqiSession:
             if session is None or session is not self._session:
                 return
             self._session, self.ready = None, False
-        WatchedThread("lumen-naoqi-closing", session.close).start()  # it may wait for a robot that does not answer
+        WatchedThread("lumen-naoqi-closing", session.close).start()  # closing may wait for a robot that does not answer
         self._lost(reason)

@@ -13,7 +13,7 @@ NAO = "nao.local"
 def set_up(request: RobotRequest) -> Setup:
     """Return the robot at the address in the option `url`, with its clock and its hall.
 
-    Raises UsageError for a story or a speed other than 1, and RobotError if there is no such robot.
+    Raises UsageError for a story or a speed other than 1, and RobotError if no suitable robot answers.
     """
     if request.speed != "1":
         raise UsageError("a real robot runs in real time: leave out --speed")
@@ -25,5 +25,5 @@ def set_up(request: RobotRequest) -> Setup:
 
 
 def set_up_house(requests: Mapping[str, RobotRequest]) -> dict[str, Setup]:
-    """Raise UsageError: a process has only one connection."""
+    """Raise UsageError, because a process can connect to only one real robot."""
     raise UsageError("each real robot needs its own process: pass `--robot-name NAME` and `--robot-url URL`")

@@ -27,38 +27,38 @@ LANGUAGE_NAMES = {
     "ru": "Russian", "tr": "Turkish", "pl": "Polish", "sv": "Swedish", "da": "Danish", "fi": "Finnish",
     "cs": "Czech", "el": "Greek", "nb": "Norwegian",
 }  # fmt: skip
-"""NAOqi's names of languages."""
+"""NAOqi's language names by ISO 639-1 code."""
 
 
 def words(text: str) -> str:
-    r"""Return the text without what the voice would interpret as commands, such as `\vol=100\` or `^run(…)`.
+    r"""Return the text without the signs of voice commands such as `\vol=100\` or `^run(…)`.
 
-    Spoken texts contain visitors' names; `\…\` would change volume, speed or language from then on, and `^…(…)` would
-    make ALAnimatedSpeech start behaviours.
+    Spoken texts contain visitors' names. `\…\` would permanently change the volume, speed or language, and `^…(…)`
+    would make ALAnimatedSpeech start behaviours.
     """
     printable = "".join(sign if sign.isprintable() and sign not in "\\^" else " " for sign in text)
     return " ".join(printable.split())
 
 
 def language_of(code: str, spoken: Sequence[str]) -> str:
-    """Return NAOqi's name of the language, empty if it is not among the robot's languages `spoken`."""
+    """Return NAOqi's name for a language code; empty if `spoken`, the robot's languages, lacks that name."""
     name = LANGUAGE_NAMES.get(code.partition("-")[0].lower(), code)
     return name if name in spoken else ""
 
 
 LOOK_TOLERANCE = 0.03
-"""A head joint that is nearer than this to its goal has reached it [rad]."""
+"""The distance below which a head joint has reached its goal [rad]."""
 LOOK_GRACE = 1.0
-"""The time that a look may take beyond the time that the movement needs [s]."""
+"""The time allowed for a look beyond the movement's duration [s]."""
 WAKE_SPEED = 0.5
 SOUND_FOLDER = "/home/nao/lumen"
-"""The folder of the exhibition's sounds on the robot: NAOqi plays only files on its own disk."""
+"""The folder of the exhibition's sounds on the robot, because NAOqi plays only files on the robot's disk."""
 
 _log = logging.getLogger(__name__)
 
 
 class NaoqiSkills:
-    """Begins activities; `fallen` is True from a fall until the robot stands again.
+    """Begins activities; `fallen` is True from a fall until the robot has reached a posture again.
 
     If `body_language` is True, NAOqi makes the gestures of speech.
     """
@@ -137,7 +137,7 @@ class NaoqiSkills:
         yield self._post("ALAudioPlayer", "playFile", f"{SOUND_FOLDER}/{file}")
 
     def _leds(self, colours: Mapping[str, str], seconds: float) -> CallSequence:
-        """Return the activity of a fade; when it is cancelled, the lights change at once: NAOqi can't stop it."""
+        """Return the activity of a fade; a cancelled fade changes the lights immediately: NAOqi can't stop fades."""
         return CallSequence(
             self._fade(colours, seconds),
             lambda: [self._post("ALLeds", "fadeRGB", *fade) for fade in fades(colours, self._body)],
@@ -148,7 +148,7 @@ class NaoqiSkills:
         calls = [self._post("ALLeds", "fadeRGB", *fade) for fade in fades(colours, self._body, seconds)]
         while self._clock() < begin + seconds and not any(call.failed for call in calls):
             yield None
-        for call in calls:  # noqa: UP028  `yield from` would send its answers into a list
+        for call in calls:  # noqa: UP028  `yield from` would send the answers into a list
             yield call
 
     def _posture(self, name: str, speed: float) -> CallSequence:

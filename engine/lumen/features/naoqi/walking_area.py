@@ -1,4 +1,4 @@
-"""The area in which the robot may walk: its stage, by its own odometry, and obstacles."""
+"""The area in which the robot can walk, limited by its stage, based on odometry, and by obstacles."""
 
 from collections.abc import Callable, Mapping, Sequence
 from math import cos, hypot, sin
@@ -11,21 +11,21 @@ from lumen.ports import Sonar, Whereabouts
 from lumen.robot.hazards import danger
 
 FALL_DRIFT = 0.6
-"""The distance that the robot may have slid in a fall and while getting up [m], the same as for the simulated robot."""
+"""The distance that the robot may have slid in a fall and while getting up [m], as in the simulation."""
 MOST_BETWEEN_LOOKS = 0.5
-"""A larger distance between two readings of the position means that the odometry was reset [m]."""
+"""The distance between two position readings above which the odometry counts as reset [m]."""
 MAX_STAGE_DRIFT = 0.03
-"""The greatest distance by which a walk to a place may leave the stage [m]."""
+"""The maximum distance by which a walking robot may leave the stage [m]."""
 
 GroundPose = Sequence[float]
 """x, y [m] and theta [rad], as from `ALMotion.getRobotPosition`."""
 
 
 class WalkingArea:
-    """Keeps the robot's first position, which is the origin of the stage.
+    """Checks walks against the stage, whose origin is the robot's first position, and against obstacles.
 
-    `pressed` has the state of the tactile sensors; `echo` returns the sonars' reading, None without one; `hardware` has
-    the robot's reach.
+    `pressed` has the state of the tactile sensors; `echo` returns the sonars' reading, None if unavailable; `hardware`
+    has the robot's reach.
     """
 
     def __init__(
@@ -41,13 +41,13 @@ class WalkingArea:
         self._reckoning = DeadReckoning()
 
     def meet(self, place: GroundPose) -> None:
-        """Note the robot's position; the first one is the origin."""
+        """Use the robot's position as the stage's origin, unless an origin is set."""
         self._origin = self._origin or place
 
     def whereabouts(self, place: GroundPose) -> Whereabouts:
         """Return the robot's place on the stage for NAOqi's `place`.
 
-        Call it often, since it also sums up the uncertainty.
+        Call this often, because it also accumulates the uncertainty.
         """
         self.meet(place)
         assert self._origin is not None
@@ -60,16 +60,16 @@ class WalkingArea:
         return self._reckoning.whereabouts
 
     def fell(self) -> None:
-        """Note a fall: nothing measures how far the robot slides until it stands again."""
+        """Increase the uncertainty after a fall, because no sensor measures how far the robot slides."""
         self._reckoning.slid += FALL_DRIFT
 
     def danger(self) -> str:
-        """Return why the robot must not walk now; empty if nothing is in the way."""
+        """Return why the robot must not walk now; empty if no obstacle is detected."""
         echo = self._echo()
         return danger(self._pressed, (d for d in (echo.left, echo.right) if d > 0.0) if echo else ())
 
     def check_way(self, here: GroundPose, way: GroundPose) -> None:
-        """Raise RobotError if a walk by `way` from `here` would leave the stage, farther than the robot already has.
+        """Raise RobotRefusedError if a walk by `way` would end outside the stage, and farther out than `here`.
 
         `way` is relative to `here`: ahead and left [m], and the turn [rad].
         """
@@ -79,9 +79,9 @@ class WalkingArea:
             raise RobotRefusedError(f"{reason}: the robot did not start walking")
 
     def outside(self, there: GroundPose, before: GroundPose, drift: float = 0.0) -> str:
-        """Return why the robot must not be `there`; empty if it stays on the stage, or no farther out than `before`.
+        """Return why the robot must not be `there`; empty on the stage, or if `there` is no farther out than `before`.
 
-        It may leave the stage by `drift` [m].
+        Both limits have a tolerance of `drift` [m]. Without a stage or an origin, return an empty string.
         """
         if self.stage is None or self._origin is None:
             return ""

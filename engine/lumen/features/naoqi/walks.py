@@ -13,23 +13,22 @@ from lumen.language.commands import Move, Walk
 MAX_WALK_DISTANCE = 10.0
 """The longest walk that is accepted [m]."""
 ARRIVAL_TOLERANCE, HEADING_TOLERANCE = 0.1, 0.2
-"""The distance [m] and angle [rad] from its goal beyond which a walk has failed, if NAOqi does not report the result.
-"""
+"""The deviations in distance [m] and heading [rad] above which a walk has failed, if NAOqi reports no result."""
 POSITION_CHECK_PERIOD = 0.2
 """The time between two checks of the robot's position [s]."""
 SITTING_FAMILIES = ("Sitting", "SittingOnChair", "Belly", "Back", "Left", "Right", "UpsideDown", "Kneeling", "Lifted")
-"""Families of postures from which the robot can't walk, besides those that begin with `Lying`."""
+"""NAOqi's posture families from which the robot can't walk, besides those that begin with `Lying`."""
 
 PostCall = Callable[..., NaoqiCall]
 
 
 def grounded(family: object) -> bool:
-    """Return True if the posture family means that the robot is not on its feet or wheels."""
+    """Return whether the robot is off its feet or wheels, by its posture family."""
     return str(family) in SITTING_FAMILIES or str(family).startswith("Lying")
 
 
 class WalkMonitor:
-    """Checks for hazards while the robot walks, and stops it at the first; `reason` is why, empty if it has not."""
+    """Checks for hazards during a walk, and stops the robot at the first; `reason` is that hazard, empty before."""
 
     def __init__(self, post: PostCall, area: WalkingArea, here: GroundPose) -> None:
         self.reason = ""
@@ -45,7 +44,10 @@ class WalkMonitor:
             self._post("ALMotion", "stopMove")
 
     def _astray(self, now: float) -> str:
-        """Return why the robot must not continue from its present place; empty if it may or the place is unknown."""
+        """Return why the robot must not continue from its present position.
+
+        Return an empty string if it can continue, or while NAOqi has not answered.
+        """
         if self._where is None:
             if now >= self._look:
                 self._where, self._look = self._post("ALMotion", "getRobotPosition", True), now + POSITION_CHECK_PERIOD
@@ -68,7 +70,7 @@ class NaoqiWalks:
     def begin(self, command: Walk | Move) -> CallSequence:
         """Return the activity of a walk.
 
-        Raises RobotError if the walk is invalid or a hazard is near; nothing moves then.
+        Raises RobotError before any movement if the walk is invalid or a hazard is near.
         """
         numbers = (command.x, command.y, command.theta) if isinstance(command, Walk) else (
             command.vx, command.vy, command.vtheta)  # fmt: skip
@@ -82,7 +84,7 @@ class NaoqiWalks:
         return CallSequence(doing, lambda: [self._post("ALMotion", "stopMove")])
 
     def _standing(self) -> CallSteps:
-        """Return the robot's position. Raises RobotError if it does not stand or its motors are off."""
+        """Return the robot's position. Raises RobotRefusedError if it is not upright or its motors are off."""
         family = yield self._post("ALRobotPosture", "getPostureFamily")
         if grounded(family):
             raise RobotRefusedError(f"the robot is {family}: send it to Stand first")
@@ -105,7 +107,7 @@ class NaoqiWalks:
             raise RobotFailedError("the robot stopped before it arrived: something is in its way")
 
     def _arrived(self, here: GroundPose, way: tuple[float, float, float]) -> CallSteps:
-        """Return True if the robot is at its goal by its odometry: `moveTo` of NAOqi 2.1 does not report it."""
+        """Return whether odometry shows the robot at its goal, because NAOqi 2.1's `moveTo` does not report this."""
         there = yield self._post("ALMotion", "getRobotPosition", True)
         went, turned = hypot(there[0] - here[0], there[1] - here[1]), there[2] - here[2]
         return abs(went - hypot(*way[:2])) <= ARRIVAL_TOLERANCE and abs(turned - way[2]) <= HEADING_TOLERANCE

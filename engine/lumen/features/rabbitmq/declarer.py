@@ -45,8 +45,8 @@ class QueueDeclarer:
     def remove(self, connection: PolledConnection, subscription: Subscription) -> None:
         """Remove a queue unless another process reads it.
 
-        A queue of messages that must arrive is unbound, and deleted only if it is empty. A quorum queue is kept: RabbitMQ
-        can't delete it on that condition.
+        A queue of messages that must arrive is unbound, and deleted only if it is empty. A quorum queue is kept:
+        RabbitMQ can't delete it on that condition.
         """
         with suppress(ChannelClosedByBroker), connection.asking() as channel:
             self._remove(channel, subscription)

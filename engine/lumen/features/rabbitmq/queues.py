@@ -1,9 +1,9 @@
 """The queues that Lumen declares on a broker: one type for each kind of route, and two side queues.
 
 Telemetry uses a queue that is deleted with its reader and keeps the newest messages. Commands use a queue that outlasts
-its reader's absence; expired commands move to `lumen.dead`. An incoming journal uses a quorum queue. An outgoing journal
-uses a stream, which any number of modules can read. All queues are bounded: a full queue refuses messages that must
-arrive, and drops its oldest messages if they may be lost.
+its reader's absence; expired commands move to `lumen.dead`. An incoming journal uses a quorum queue. An outgoing
+journal uses a stream, which any number of modules can read. All queues are bounded: a full queue refuses messages that
+must arrive, and drops its oldest messages if they may be lost.
 """
 
 import hashlib

@@ -1,1 +1,1 @@
-"""The explain pages of fleets."""
+"""The explain pages for fleets."""

@@ -1,1 +1,1 @@
-"""The logic of a fleet, without I/O: rollouts, the orders that robots accept, and their reports."""
+"""A fleet's logic without I/O: rollouts, the orders that robots accept, and the robots' reports."""

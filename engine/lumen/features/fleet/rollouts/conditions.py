@@ -1,4 +1,4 @@
-"""`abort-if`: an expression over measures, in which `before` is the same measure for the previous files."""
+"""`abort-if`: an expression over measures, in which `before` is a measure's value for the previous files."""
 
 from collections.abc import Iterator, Mapping
 from typing import NamedTuple
@@ -29,7 +29,10 @@ class _Replacement(NamedTuple):
 
 
 def condition_faults(source: str, measures: Mapping[str, object]) -> list[ConditionFault]:
-    """Return all errors of names in a condition, or its first syntax error; empty if it can be compiled."""
+    """Return a condition's first syntax error, else all errors in names, else the compiler's error.
+
+    Return an empty list if the condition can be compiled.
+    """
     try:
         tree = parse_expression(source)
     except ExpressionError as error:
@@ -45,7 +48,7 @@ def condition_faults(source: str, measures: Mapping[str, object]) -> list[Condit
 
 
 def meant(source: str, measures: Mapping[str, object]) -> str:
-    """Return the condition as an expression about `context.now` and `context.before`, which hold measures by name.
+    """Return the condition as an expression over `context.now` and `context.before`, which map names to measures.
 
     `errors > 2 * before` becomes `context.now.errors > 2 * context.before.errors`. Raises ExpressionError if the
     condition can't be parsed.
@@ -60,7 +63,7 @@ def meant(source: str, measures: Mapping[str, object]) -> str:
 def holds(
     source: str, measures: Mapping[str, object], now: Mapping[str, float], before: Mapping[str, float]
 ) -> bool | None:
-    """Return True if a condition holds; None if it depends on an unknown measure (absent in `now` or `before`)."""
+    """Return whether a condition holds; None if it depends on a measure that `now` or `before` lacks."""
     guard = compile_guard(meant(source, measures))
     try:
         return bool(guard(Scope(context={"now": now, BEFORE: before})))
@@ -71,7 +74,7 @@ def holds(
 def _replacements(
     node: ExpressionNode, measures: Mapping[str, object], around: frozenset[str]
 ) -> Iterator[_Replacement | ConditionFault]:
-    """Yield the replacement of each name; `around` are the measures in the comparison that contains it."""
+    """Yield the replacement or fault of each name; `around` has the names in the comparison that contains `node`."""
     match node:
         case Identifier(name=name):
             yield _named(node, name, measures, around)

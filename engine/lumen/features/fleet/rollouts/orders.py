@@ -1,4 +1,4 @@
-"""A centre's orders to its houses, and which of them a robot accepts."""
+"""A centre's orders to its houses, and a robot's decision whether to accept an order."""
 
 import json
 from collections.abc import Mapping
@@ -6,33 +6,33 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 NOT = "!"
-"""The prefix in `!HASH`: a robot that runs that bundle should go back to the one that it ran before."""
+"""The prefix in `!HASH`: a robot that runs that bundle should return to its previous bundle."""
 
 
 @dataclass(frozen=True, slots=True)
 class DesiredState:
-    """An order: what each robot of a house should run."""
+    """An order: the bundle that each robot of a house should run."""
 
     centre: str
     """The centre's id."""
     term: int
     """The number of the centre's term, which grows when a centre takes over from another."""
     version: int
-    """The number of the order in this term."""
+    """The order's number in this term."""
     house: str
     robots: Mapping[str, str] = field(default_factory=dict)
-    """A hash, or `!HASH`, by the robot's name."""
+    """A bundle's hash, or `!HASH`, for each robot's name."""
     trying: str = ""
-    """A bundle that each robot should try without switching to it, empty for none."""
+    """The bundle that each robot should try without switching to it; empty for none."""
 
     def text(self) -> str:
-        """Return the order as JSON text, which is what is signed."""
+        """Return the order as JSON text, which the centre signs."""
         data = {name: getattr(self, name) for name in self.__slots__}
         return json.dumps(data, sort_keys=True, separators=(",", ":"))
 
 
 def desired_from(text: str) -> DesiredState | None:
-    """Return the order in a text, None if it is invalid."""
+    """Return the order in a JSON text; None if it is invalid."""
     try:
         data = json.loads(text)
     except (ValueError, RecursionError):
@@ -54,7 +54,7 @@ class FollowedOrder:
     term: int = 0
     version: int = 0
     wanted: str = ""
-    """The bundle that the robot should run (a hash, or `!HASH`); empty if it may keep its own."""
+    """The bundle that the robot should run (a hash, or `!HASH`); empty if the robot can keep its files."""
     trying: str = ""
     """The bundle that the robot should try; empty for none."""
 
@@ -64,10 +64,10 @@ class FollowedOrder:
 
 
 def heed(followed: FollowedOrder, desired: DesiredState, robot: str) -> tuple[FollowedOrder, str]:
-    """Return the order that a robot follows after it received `desired`, and why it rejects `desired`.
+    """Return the order that a robot follows after receiving `desired`, and the reason if it rejects `desired`.
 
-    The reason is empty if the robot does not reject it. No clock matters: term and version decide which order is newer.
-    The caller must have verified the signature.
+    The reason is empty if `desired` is accepted, older in the same term, or repeated. Term and version decide which
+    order is newer, regardless of clocks. The caller must have verified the signature.
     """
     wanted = desired.robots.get(robot, "")
     newer = replace(followed, centre=desired.centre, term=desired.term, version=desired.version, wanted=wanted)

@@ -1,4 +1,4 @@
-"""The report that a robot sends its centre every ten seconds, as JSON data: without names, words or images."""
+"""The report that a robot sends its centre every 10 s as JSON data, without people's names, words or images."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
@@ -13,14 +13,14 @@ PROVED, PROBATION, WAITING, FETCHING, CHECKING, REFUSED, ROLLED_BACK, BROKEN = (
     "proved", "probation", "waiting", "fetching", "checking", "refused", "rolled back", "edited",
 )  # fmt: skip
 STATES = (PROVED, PROBATION, WAITING, FETCHING, CHECKING, REFUSED, ROLLED_BACK, BROKEN)
-"""The states of a robot with the bundle that it should run; `edited` means that its files were changed by hand."""
+"""The states of a robot with the bundle that it should run; `edited` means that its files were changed locally."""
 
 SAME, DIFFER = "same", "differ"
 TRIED = (SAME, DIFFER, REFUSED)
-"""The results of trying a bundle: the last visits came out the same, some differ, or the bundle is refused."""
+"""The results of a trial: the last visits were unchanged, some visits differed, or the bundle was refused."""
 
 HOURS = "hours"
-"""The measure that is always counted: how long a bundle has run [h]."""
+"""The measure that is always counted: the time for which a bundle has run [h]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,37 +30,38 @@ class RobotPresence:
     robot: str
     """The robot, as `HOUSE/ROBOT`."""
     bundle: str = ""
-    """The bundle that runs."""
+    """The running bundle's hash."""
     state: str = PROVED
     """The robot's state with the bundle `about`."""
     about: str = ""
-    """The bundle that the robot was ordered to run; without such an order the running one."""
+    """The hash of the bundle that the robot was ordered to run; without such an order, of the running bundle."""
     trouble: str = ""
-    """The reason why the robot makes no progress; empty if it does."""
+    """The robot's present problem, such as the reason for no progress; empty for none."""
     wants: str = ""
     """The hash of a bundle that the robot should run or try but lacks; empty for none."""
     centre: str = ""
     """The id of the centre that the robot follows."""
     term: int = 0
-    """The term of the order that the robot follows."""
+    """The term of the robot's last accepted order."""
     version: int = 0
-    """The version of that order."""
+    """The version of the robot's last accepted order."""
     now: Mapping[str, float] = field(default_factory=dict)
     """Counts since `bundle` began to run."""
     before: Mapping[str, float] = field(default_factory=dict)
     """Counts of the bundle that ran before."""
     clock: float = 0.0
-    """The time of the robot's clock [s since 1970]."""
+    """The robot's clock time [s since 1970]."""
     since: float = 0.0
     """The time at which `bundle` began to run [s since 1970]."""
     played: int = 0
     """The number of the robot's last visits that were replayed with the bundle."""
     same: int = 0
-    """The number of those that came out the same."""
+    """The number of replayed visits that were unchanged."""
     tried: Mapping[str, Any] = field(default_factory=dict)
-    """The result of a trial, empty without one.
+    """The result of a trial; empty without a trial.
 
-    Its keys are `bundle`, `verdict` (one of `TRIED`), `played` and `same` (numbers of visits), and `why` it is refused.
+    Its keys are `bundle`, `verdict` (from `TRIED`), `played` and `same` (numbers of visits), and `why` (the reason
+    for a refusal).
     """
 
     def to_json(self) -> dict[str, Any]:
@@ -69,7 +70,7 @@ class RobotPresence:
 
 
 def presence_from(robot: str, body: Any) -> RobotPresence | None:
-    """Return the presence in a message's body, None if it is invalid."""
+    """Return the presence in a message's body; None if the body is invalid."""
     if not isinstance(body, Mapping):
         return None
     texts = {name: body.get(name, "") for name in ("bundle", "state", "about", "trouble", "wants", "centre")}
@@ -95,7 +96,7 @@ def _tried(data: Any) -> bool:
 
 
 def measures_from(data: Any) -> dict[str, float] | None:
-    """Return the counts in a message's data by name; None if the data is invalid."""
+    """Return the counts by measure in a message's data; None if the data is invalid."""
     return dict(data) if _measures(data) else None
 
 
@@ -106,9 +107,9 @@ def _measures(data: Any) -> bool:
 
 
 def rates(counts: Iterable[Mapping[str, float]], measures: Mapping[str, FleetMeasure]) -> dict[str, float]:
-    """Return each measure of all these counts together: per hour of a robot, or per count of another measure.
+    """Return each measure over all these counts: per robot hour, or per count of another measure.
 
-    A measure is absent if no counts with hours have it, or if the other measure is 0.
+    A measure is left out if no counts with hours contain it, or if the other measure's sum is 0.
     """
     rows = list(counts)
     found = {}

@@ -1,7 +1,7 @@
-"""A rollout: it gives a bundle to more and more robots, or withdraws it from all of them.
+"""A rollout, which assigns a bundle to more and more robots, or withdraws it from all of them.
 
-The invariant, whatever is late, lost, killed or duplicated: no more robots run an unproved bundle than the present step
-allows. Therefore a robot that was given the bundle counts until it has reported another bundle.
+The invariant, despite late, lost or repeated messages and killed processes: no more robots run an unproved bundle than
+the present step allows. Therefore a robot with the bundle counts until it has reported a different bundle.
 """
 
 from collections.abc import Iterable
@@ -16,13 +16,13 @@ from lumen.features.fleet.rollouts.trying import HeardRobots, begin_steps, fresh
 from lumen.features.fleet.settings import Fleet, RolloutPlan, StepTarget
 
 LONGEST_LOOK = 30.0
-"""The maximum time that one tick may count [s], so that a changed clock or a dead centre skips no waiting."""
+"""The maximum time that one tick counts [s]; a changed clock or a stopped centre thus shortens no wait."""
 PATIENCE = 900.0
-"""The time beyond twice a step's pause after which a person is asked about a step that is not proved [s]."""
+"""The time beyond twice a step's pause after which an unproved step waits for the operator's decision [s]."""
 
 
 def step(state: CentreState, fleet: Fleet, heard: HeardRobots, now: float) -> CentreState:
-    """Return the state at `now` [s since 1970]; the caller must write changes to the journal before it sends them."""
+    """Return the state at `now` [s since 1970]; the caller must write changes to the journal before sending orders."""
     passed = min(max(now - state.looked, 0.0), LONGEST_LOOK) if state.looked else 0.0
     state = _released(_overruled(replace(state, looked=now), heard), heard)
     rollout = state.rollout
@@ -42,8 +42,8 @@ def step(state: CentreState, fleet: Fleet, heard: HeardRobots, now: float) -> Ce
 def begin(state: CentreState, fleet: Fleet, bundle: str, plan: RolloutPlan, now: float) -> CentreState:
     """Return the state with a new rollout, which the next `step` begins.
 
-    Raises ValueError with the reason if another rollout is under way, if a step has no robots, or if the centre gives
-    no orders any more.
+    Raises ValueError, with the reason, if another rollout is under way, a step has no robots, or the centre no longer
+    gives orders.
     """
     if state.overruled:
         raise ValueError(state.overruled)
@@ -59,9 +59,9 @@ def begin(state: CentreState, fleet: Fleet, bundle: str, plan: RolloutPlan, now:
 
 
 def abort(state: CentreState, why: str) -> CentreState:
-    """Return the state with each robot of the rollout sent back to the proved bundle that it should run before.
+    """Return the state in which each robot of the rollout should run its proved bundle from before the rollout.
 
-    A robot without such a bundle goes back to the files that it ran. Nothing changes if no rollout is under way.
+    A robot without a proved bundle should return to its previous files. Nothing changes if no rollout is under way.
     """
     rollout = state.rollout
     if rollout is None or not rollout.under_way:
@@ -76,10 +76,10 @@ def abort(state: CentreState, why: str) -> CentreState:
 
 
 def decide(state: CentreState, decision: str, why: str = "") -> CentreState:
-    """Return the state after a person's decision, `PAUSED` or `GOING`.
+    """Return the state after the operator's decision, `PAUSED` or `GOING`.
 
-    If the rollout waits for a person, `GOING` accepts its trials or its present step. Raises ValueError without a
-    rollout under way.
+    If the rollout waits for a decision, `GOING` accepts its trials or its present step. Raises ValueError if no rollout
+    is under way.
     """
     rollout = state.rollout
     if rollout is None or not rollout.under_way:
@@ -87,15 +87,15 @@ def decide(state: CentreState, decision: str, why: str = "") -> CentreState:
     if rollout.plan.try_first and not rollout.tried and rollout.state == PERSON and decision == GOING:
         return begin_steps(state, replace(rollout, reason=why))
     settled = rollout.state == PERSON and decision == GOING
-    if settled:  # a person has decided the open question: this step is good
+    if settled:  # the operator has accepted this step
         return _onward(state, replace(rollout, state=GOING, reason=why))
     return replace(state, rollout=replace(rollout, state=decision, reason=why))
 
 
 def take_over(state: CentreState, heard: HeardRobots) -> CentreState:
-    """Return the state of a centre that replaces one that is gone, or continues from an old copy of its folder.
+    """Return the state of a centre that replaces a lost centre, or continues from an old copy of its folder.
 
-    Its orders have a new term. A rollout under way waits for a person.
+    The new centre's orders have a new term. A rollout under way waits for the operator's decision.
     """
     term = max([state.term, *(row.presence.term for row in heard.values())]) + 1
     state = replace(state, term=term, version=state.version + 1, overruled="")
@@ -106,7 +106,7 @@ def take_over(state: CentreState, heard: HeardRobots) -> CentreState:
 
 
 def allowed(plan: RolloutPlan, at: int, fleet: Fleet) -> int:
-    """Return the maximum number of robots that may run the bundle in step `at`: that of the largest step so far."""
+    """Return the maximum number of robots that may run the bundle in step `at`: the size of the largest step so far."""
     return max(_size(target, fleet) for target in plan.steps[: at + 1])
 
 
@@ -116,7 +116,7 @@ def _size(target: StepTarget, fleet: Fleet) -> int:
 
 
 def _overruled(state: CentreState, heard: HeardRobots) -> CentreState:
-    """Return the state marked as overruled if a robot follows a newer order than this centre has sent."""
+    """Return the state, marked as overruled if a robot follows a newer order than this centre's last order."""
     for robot, row in heard.items():
         said = row.presence
         if said.term > state.term:
@@ -130,9 +130,9 @@ def _overruled(state: CentreState, heard: HeardRobots) -> CentreState:
 
 
 def _released(state: CentreState, heard: HeardRobots) -> CentreState:
-    """Return the state without the exposed robots that no longer count as running an unproved bundle.
+    """Return the state without the exposed robots that no longer run an unproved bundle.
 
-    Either the bundle is proved by now, or the robot has reported another one since the bundle was withdrawn.
+    Either the bundle has been proved, or the robot has reported a different bundle after the withdrawal.
     """
 
     def back(robot: str, bundle: str, version: int) -> bool:
@@ -145,7 +145,7 @@ def _released(state: CentreState, heard: HeardRobots) -> CentreState:
 
 
 def _failed(rollout: Rollout, fleet: Fleet, heard: HeardRobots) -> str:
-    """Return why the bundle must be withdrawn, a robot's failure or `abort_if`; empty if nothing shows it."""
+    """Return why the bundle must be withdrawn, a robot's failure or `abort_if`; empty if neither occurs."""
     for robot in rollout.assigned:
         said = heard[robot].presence if robot in heard else None
         new = said is not None and said.version > rollout.version
@@ -175,9 +175,10 @@ def _told(rollout: Rollout, fleet: Fleet, heard: HeardRobots) -> str:
 
 
 def _assigned(state: CentreState, rollout: Rollout, fleet: Fleet, heard: HeardRobots, now: float) -> CentreState:
-    """Return the state with the bundle given to as many robots as the step has and as may be exposed.
+    """Return the state with the bundle assigned to as many of the step's robots as may be exposed.
 
-    A robot that may still run a withdrawn bundle counts, and is chosen only after it has reported that it is back.
+    A robot that may still run a withdrawn bundle counts as exposed. It is chosen only after it has reported a different
+    bundle.
     """
     target = rollout.plan.steps[rollout.at]
     room = allowed(rollout.plan, rollout.at, fleet) - len({*state.exposed, *rollout.assigned})
@@ -200,7 +201,7 @@ def _assigned(state: CentreState, rollout: Rollout, fleet: Fleet, heard: HeardRo
 
 
 def _spread(robots: Iterable[str]) -> list[str]:
-    """Return the robots, one of each house in turn, so that a step includes many houses."""
+    """Return the robots in an order that alternates between houses, which spreads a step over many houses."""
     houses: dict[str, list[str]] = {}
     for robot in robots:
         houses.setdefault(robot.partition("/")[0], []).append(robot)
@@ -210,7 +211,10 @@ def _spread(robots: Iterable[str]) -> list[str]:
 def _judged(
     state: CentreState, rollout: Rollout, fleet: Fleet, heard: HeardRobots, now: float, passed: float
 ) -> CentreState:
-    """Judge a step that has been watched for its pause: continue, or ask a person if the result is unknown or late."""
+    """Add `passed` [s] to the step's times, and continue if it has been watched for its pause and is proved.
+
+    If the result of `abort_if` is unknown or the step is late, wait for the operator's decision.
+    """
     said = [fresh(heard, robot, now) for robot in rollout.assigned]
     there = [each for each in said if each]
     proved = [each for each in there if each.bundle == rollout.bundle and each.state == PROVED]
@@ -238,7 +242,7 @@ def _pause_for_decision(state: CentreState, rollout: Rollout, why: str) -> Centr
 
 
 def _onward(state: CentreState, rollout: Rollout) -> CentreState:
-    """Return the state at the next step, or at the end, when the bundle is proved."""
+    """Return the state at the next step, or after the last step the finished rollout with its bundle proved."""
     if rollout.at + 1 < len(rollout.plan.steps):
         return replace(state, rollout=replace(rollout, at=rollout.at + 1, watched=0.0, waited=0.0))
     proved = tuple(dict.fromkeys((*state.proved, rollout.bundle)))

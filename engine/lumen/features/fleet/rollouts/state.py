@@ -1,4 +1,4 @@
-"""The state of a centre and its rollout, as values for a journal."""
+"""The state of a centre and its rollout, which can be saved in a journal."""
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, replace
@@ -21,22 +21,22 @@ class Rollout:
     at: int = 0
     """The index of the present step."""
     assigned: tuple[str, ...] = ()
-    """The robots that were given the bundle; their number only grows."""
+    """The robots with the bundle; their number only grows."""
     watched: float = 0.0
-    """The time for which most of these robots have run the bundle in this step while the centre ran [s]."""
+    """The time in this step while the centre ran and most of these robots ran the bundle, proved [s]."""
     waited: float = 0.0
     """The time for which this step has been under way while the centre ran [s]."""
     state: str = GOING
     reason: str = ""
     """The reason for `state`, which may be empty."""
     begun: float = 0.0
-    """The time of the rollout's beginning [s since 1970]."""
+    """The rollout's start [s since 1970]."""
     version: int = 0
     """The version of the last order before the rollout or, after trials, before its first step."""
     prior: Mapping[str, str] = field(default_factory=dict)
-    """The proved bundle that each assigned robot was to run before the rollout; robots without one are left out."""
+    """Each assigned robot's proved bundle from before the rollout; robots without a proved bundle are left out."""
     tried: bool = False
-    """True if the trials before the first step are over."""
+    """True if the trials before the first step have ended."""
 
     @property
     def under_way(self) -> bool:
@@ -46,7 +46,7 @@ class Rollout:
 
 @dataclass(frozen=True, slots=True)
 class CentreState:
-    """The state of a centre, which its journal keeps."""
+    """A centre's state, which its journal stores."""
 
     centre: str
     """The centre's id."""
@@ -57,25 +57,25 @@ class CentreState:
     wanted: Mapping[str, str] = field(default_factory=dict)
     """The bundle that each robot should run (a hash, or `!HASH`), by HOUSE/ROBOT."""
     exposed: Mapping[str, tuple[str, int]] = field(default_factory=dict)
-    """By robot, the unproved bundle that it may run, and the version of the order that withdrew it, 0 if none did."""
+    """For each robot, the unproved bundle that it may run, and the version of the withdrawing order, 0 for none."""
     proved: tuple[str, ...] = ()
-    """The bundles whose rollout was finished."""
+    """The bundles with a finished rollout."""
     pinned: tuple[str, ...] = ()
-    """The robots that are left out of rollouts."""
+    """The robots that rollouts leave out."""
     rollout: Rollout | None = None
     looked: float = 0.0
     """The time of the last tick [s since 1970]."""
     overruled: str = ""
-    """Why this centre gives no more orders, empty if it does."""
+    """The reason why this centre no longer gives orders; empty if it gives orders."""
     trying: str = ""
     """The bundle that all robots should try; empty for none."""
 
     def attempt(self, bundle: str) -> "CentreState":
-        """Return the state with a bundle that all robots should try, empty for none; a change increases the version."""
+        """Return the state with the bundle that all robots should try, empty for none; a change increases `version`."""
         return self if bundle == self.trying else replace(self, trying=bundle, version=self.version + 1)
 
     def want(self, wanted: Mapping[str, str]) -> "CentreState":
-        """Return the state with these robots' wanted bundles changed; a change increases the version."""
+        """Return the state with these wanted bundles by robot; a change increases `version`."""
         if wanted.items() <= self.wanted.items():
             return self
         return replace(self, wanted={**self.wanted, **wanted}, version=self.version + 1)

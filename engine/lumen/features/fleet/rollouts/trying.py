@@ -1,6 +1,6 @@
 """Trials before a rollout: all robots lint a bundle for their bodies and replay their own last visits with it.
 
-No visit leaves its house: robots report only whether the visits came out the same.
+No visit leaves its house: robots report only how many visits were unchanged.
 """
 
 from collections.abc import Mapping
@@ -13,7 +13,7 @@ from lumen.features.fleet.settings import Fleet
 FRESH = 60.0
 """The time for which a robot counts as present after its last report [s]."""
 TRYING = 600.0
-"""The maximum time for which present robots may try a bundle before a person is asked [s]."""
+"""The time limit for the trials of present robots, after which the operator must decide [s]."""
 
 HeardRobots = Mapping[str, HeardPresence]
 
@@ -23,9 +23,8 @@ def tried(
 ) -> CentreState:
     """Return the state of a rollout's trials at `now`, `passed` [s] after the last tick.
 
-    The first step begins once all present robots have tried the bundle and none refuses it. If a robot refuses it, or
-    the trials take too long, a person decides. Visits that differ do not stop the rollout, because they may be the
-    purpose of the bundle.
+    The first step begins when all present robots have tried the bundle without a refusal. After a refusal by any robot,
+    or after `TRYING`, the operator must decide. Changed visits do not stop the rollout, because they may be intended.
     """
     there = _there(state, rollout, fleet, heard, now)
     came = outcomes(rollout.bundle, there)
@@ -45,12 +44,12 @@ def tried(
 
 
 def begin_steps(state: CentreState, rollout: Rollout) -> CentreState:
-    """Return the state with the rollout at the beginning of its first step."""
+    """Return the state with the trials ended and the rollout at the start of its first step."""
     return replace(state, rollout=replace(rollout, state=GOING, tried=True, waited=0.0, version=state.version))
 
 
 def outcomes(bundle: str, there: Mapping[str, RobotPresence]) -> dict[str, Mapping[str, object]]:
-    """Return the result of each robot that has tried that bundle, as in `RobotPresence.tried`."""
+    """Return `RobotPresence.tried` for each robot that has tried the bundle."""
     return {robot: said.tried for robot, said in there.items() if said.tried.get("bundle") == bundle}
 
 
@@ -61,7 +60,7 @@ def counted(bundle: str, heard: HeardRobots) -> dict[str, int]:
 
 
 def fresh(heard: HeardRobots, robot: str, now: float) -> RobotPresence | None:
-    """Return a robot's presence if it came within the last `FRESH` seconds, else None."""
+    """Return a robot's presence if it arrived within the last `FRESH` seconds, else None."""
     found = heard.get(robot)
     return found.presence if found and abs(now - found.at) <= FRESH else None
 
