@@ -1,4 +1,4 @@
-"""Messages to people about trouble of an exhibition."""
+"""Alerts to people about an exhibition's trouble."""
 
 from lumen.feature import Feature, PartRow, Phase, Section, Subcommand
 

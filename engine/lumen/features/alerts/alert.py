@@ -12,13 +12,13 @@ TEST = "test"
 
 
 class Alert(NamedTuple):
-    """A report of one trouble, in a line of Lumen's own words: it contains no visitor's name or words."""
+    """A report of one problem, in a line without visitors' names or words."""
 
     kind: str
     """A key of `KINDS`, or `TEST`."""
     text: str
     about: str = ""
-    """Distinguishes alerts of one kind, such as the part that is lost."""
+    """Distinguishes alerts of the same kind, for example by the lost part's name."""
     at: float = 0.0
     """The Unix time of the event [s]."""
     first: float = 0.0
@@ -27,7 +27,7 @@ class Alert(NamedTuple):
     """The number of equal events since `first`."""
 
     def after(self, earlier: "Alert") -> "Alert":
-        """Return this alert, merged with the equal ones before it that were held back."""
+        """Return this alert merged with an earlier, equal alert that was held back."""
         return self._replace(first=earlier.first, times=earlier.times + self.times)
 
 
@@ -35,14 +35,14 @@ class Origin(NamedTuple):
     """The sender of an alert."""
 
     exhibition: str
-    """The name of the exhibition."""
+    """The exhibition's name."""
     robot: str
-    """The name of the robot."""
+    """The robot's name."""
     parts: tuple[str, ...] = ()
-    """The parts of the exhibition in this process."""
+    """The exhibition's parts in this process."""
 
     def body(self, alert: Alert) -> dict[str, Any]:
-        """Return the alert as JSON data. Its `text` is complete by itself, because chat programs show nothing else."""
+        """Return the alert as JSON data. Its `text` is complete, because chat programs show only that field."""
         return {
             "kind": alert.kind,
             "text": self.line(alert),
@@ -66,7 +66,7 @@ class Origin(NamedTuple):
 def one_line(text: str) -> str:
     """Return the first 500 characters of the text on one line.
 
-    Characters that control a terminal or a mail's header are left out.
+    Unprintable characters, which could control a terminal or an email header, become spaces.
     """
     return " ".join("".join(sign if sign.isprintable() else " " for sign in text).split())[:500]
 

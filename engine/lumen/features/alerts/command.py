@@ -1,4 +1,4 @@
-"""`lumen alerts test`: checks that the recipients of alerts can be reached."""
+"""`lumen alerts test`: check whether alert recipients can be reached."""
 
 import argparse
 import json
@@ -24,7 +24,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Send a test alert to each recipient and print the results; return 0 if all were reached, else 1.
+    """Send a test alert to each recipient and print the results; return 0 if all alerts arrived, else 1.
 
     Raises UsageError if there are no recipients.
     """

@@ -1,4 +1,4 @@
-"""Delivers alerts to one recipient on a thread of its own: limited in rate, silent in quiet hours, with retries."""
+"""Delivers alerts to one recipient on a separate thread, with a rate limit, quiet hours and retries."""
 
 import threading
 import time
@@ -14,11 +14,11 @@ from lumen.upkeep.ratelimit import Backoff
 from lumen.upkeep.threads import WatchedThread
 
 LONGEST_WAIT = 30.0
-"""The time between two checks whether quiet hours are over [s]."""
+"""The maximum time between two checks for due alerts, for example after quiet hours [s]."""
 
 
 class Ration:
-    """Limits alerts of the same kind and `about` to one in `interval` [s]; those held back become one, with a count."""
+    """Limits alerts of equal kind and `about` to one per `interval` [s]; held alerts are merged and counted."""
 
     def __init__(self, interval: float) -> None:
         self._interval = interval
@@ -26,15 +26,15 @@ class Ration:
         self._given: dict[tuple[str, str], float] = {}
 
     def take(self, alert: Alert) -> None:
-        """Hold back an alert until it is due; it is merged with one of the same kind and `about` that is held back."""
+        """Hold back an alert until it is due, merged with a held alert of equal kind and `about`."""
         key = (alert.kind, alert.about)
         earlier = self._held.pop(key, None)
         self._held[key] = alert.after(earlier) if earlier else alert
 
     def due(self, now: float, *, quiet: bool) -> Iterator[Alert]:
-        """Yield the alerts that may be sent at `now` [s, monotonic], in their order, and count them as sent.
+        """Yield the alerts that are due at `now` [s, monotonic], the oldest first, and count them as sent.
 
-        If `quiet`, there are none.
+        If `quiet`, yield no alerts.
         """
         if quiet:
             return
@@ -44,12 +44,12 @@ class Ration:
             yield self._held.pop(key)
 
     def remaining(self) -> Iterator[Alert]:
-        """Remove and yield all alerts that are held back."""
+        """Remove and yield all held alerts."""
         while self._held:
             yield self._held.pop(next(iter(self._held)))
 
     def wait(self, now: float) -> float | None:
-        """Return the time until an alert may be due [s], at most `LONGEST_WAIT`; None if no alert is held."""
+        """Return the time until the next alert is due [s], at most `LONGEST_WAIT`; None if no alert is held."""
         if not self._held:
             return None
         soonest = min(self._given.get(key, now) + self._interval * (key in self._given) for key in self._held)
@@ -57,14 +57,14 @@ class Ration:
 
 
 MAX_PENDING_ALERTS = 100
-"""The most alerts that may wait for the thread; beyond it the oldest are dropped."""
+"""The maximum number of alerts that wait for the thread; beyond it, the oldest are dropped."""
 FIRST_RETRY, LONGEST_RETRY = 1.0, 300.0
-"""The first and the longest wait before another attempt [s]; each is twice as long as the last."""
+"""The first and the longest wait before another attempt [s]; the wait doubles each time."""
 RETRY_FOR = 3_600.0
-"""The time for which delivery of an alert is attempted [s]."""
+"""The time for which the delivery of an alert is retried [s]."""
 
 Deliver = Callable[[Alert], None]
-"""Delivers an alert and waits for the result. Raises UndeliveredError if it did not arrive."""
+"""A function that delivers an alert and waits for the result. Raises UndeliveredError if the alert did not arrive."""
 
 
 def time_of_day() -> TimeOfDay:
@@ -75,7 +75,8 @@ def time_of_day() -> TimeOfDay:
 class Courier:
     """Accepts alerts without waiting (`put`), and delivers them one at a time.
 
-    `tell` receives a line for each outage with its reason. `clock` returns monotonic time [s], `day` the time of day.
+    `tell` receives one line, with the reason, for each outage. `clock` returns monotonic time [s], `day` the local time
+    of day.
     """
 
     def __init__(
@@ -106,16 +107,16 @@ class Courier:
                 self._changed.notify_all()
 
     def end(self, until: float) -> None:
-        """Deliver the waiting alerts until that time [s, monotonic], or drop them in quiet hours; then end.
+        """Make the thread deliver waiting alerts until `until` [s, monotonic], or drop them in quiet hours, and end.
 
-        This method returns at once.
+        Return immediately.
         """
         with self._changed:
             self._ending, self._until = True, until
             self._changed.notify_all()
 
     def join(self) -> None:
-        """Wait until the thread has ended, at most until the time that `end` received."""
+        """Wait until the thread has ended, at most until the time passed to `end`."""
         self._thread.join(max(0.0, self._until - self._clock()))
 
     def _run(self) -> None:
@@ -124,7 +125,7 @@ class Courier:
                 self._tell_until_told(alert)
 
     def _ended(self) -> bool:
-        """Wait for an alert, a due time or `end`; return True if the thread must end."""
+        """Wait for an alert, a due time or `end`; return whether the thread must end."""
         with self._changed:
             if not (self._received or self._ending):
                 self._changed.wait(self._ration.wait(self._clock()))
@@ -158,7 +159,7 @@ class Courier:
                 return
 
     def _paused(self, seconds: float) -> bool:
-        """Wait before the next attempt; return False if it would be after the end."""
+        """Wait before the next attempt; return False if that attempt would be after the end."""
         with self._changed:
             deadline = self._clock() + seconds
             while not self._ending and self._clock() < deadline:

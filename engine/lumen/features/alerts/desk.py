@@ -1,4 +1,4 @@
-"""Passes each alert to all recipients who want its kind."""
+"""Sends each alert to all recipients of its kind."""
 
 import time
 from collections.abc import Callable, Iterator
@@ -12,13 +12,13 @@ from lumen.features.alerts.settings import AlertChannel, Alerts, Mail, Program, 
 
 
 def deliver(channel: AlertChannel, alert: Alert, origin: Origin, root: Path) -> None:
-    """Deliver an alert, waiting for the network, or for a program, which runs in `root`.
+    """Deliver an alert, and wait for the network, or for a program, which runs in `root`.
 
-    Raises UndeliveredError if it did not arrive.
+    Raises UndeliveredError if the alert did not arrive.
     """
     match channel:
         case Webhook(url):
-            from lumen.features.alerts.ways import post  # each with libraries that few exhibitions need
+            from lumen.features.alerts.ways import post  # it imports libraries that few exhibitions need
 
             post(url, origin.body(alert))
         case Mail():
@@ -32,7 +32,7 @@ def deliver(channel: AlertChannel, alert: Alert, origin: Origin, root: Path) -> 
 
 
 def address(channel: AlertChannel) -> str:
-    """Return the recipient's address without secrets: a webhook's host, not its path."""
+    """Return a recipient's address without secrets, such as a webhook's host without its path."""
     match channel:
         case Webhook(url):
             return f"the webhook {url if url.startswith('$') else '/'.join(url.split('/')[:3])}"
@@ -43,14 +43,14 @@ def address(channel: AlertChannel) -> str:
 
 
 CLOSE_TIMEOUT = 10.0
-"""The longest time that the end of a process waits for alerts to arrive [s]."""
+"""The time limit for delivering the waiting alerts of a desk or recipient that ends [s]."""
 
 
 class AlertDesk:
-    """Sends alerts to people who are elsewhere; only `close` and `test` wait.
+    """Sends alerts to their recipients; only `close` and `test` wait.
 
-    `tell` receives failures with their recipients. `root` is the project's folder. Texts are Lumen's own: they contain
-    no visitor's name or words.
+    `tell` receives each failure with its recipient. `root` is the project's folder. Callers must pass texts without
+    visitors' names or words.
     """
 
     def __init__(self, alerts: Alerts, origin: Origin, root: Path, tell: Callable[[str], None]) -> None:
@@ -59,14 +59,14 @@ class AlertDesk:
         self.use(alerts)
 
     def __call__(self, kind: str, text: str, about: str = "") -> None:
-        """Send an alert about something that happened now; `about` distinguishes alerts of the same kind."""
+        """Send an alert about a present event; `about` distinguishes alerts of the same kind."""
         now = time.time()
         alert = Alert(kind, one_line(text), about, now, now)
         for courier in self._couriers:
             courier.put(alert)
 
     def use(self, alerts: Alerts) -> None:
-        """Use these recipients from now on; alerts that are being delivered are still delivered."""
+        """Use these recipients from now on; previous recipients still receive waiting alerts, except in quiet hours."""
         if alerts == self._alerts:
             return
         old, self._alerts = self._couriers, alerts
@@ -78,9 +78,9 @@ class AlertDesk:
             courier.end(time.monotonic() + CLOSE_TIMEOUT)
 
     def test(self) -> Iterator[tuple[str, str]]:
-        """Send a test alert to each recipient, even in quiet hours, and wait.
+        """Send a test alert to each recipient, even in quiet hours, and wait for the result.
 
-        Yield each address with the error, empty for a success.
+        Yield each address with the error, which is empty after success.
         """
         now = time.time()
         alert = Alert(TEST, "this is a test: you will receive this robot's alerts", "", now, now)
@@ -92,7 +92,7 @@ class AlertDesk:
                 yield address(recipient.channel), one_line(str(error))
 
     def close(self) -> None:
-        """Deliver waiting alerts, for at most ten seconds; further calls do nothing."""
+        """Deliver waiting alerts for at most CLOSE_TIMEOUT; further calls do nothing."""
         until = time.monotonic() + CLOSE_TIMEOUT
         couriers, self._couriers = self._couriers, []
         self._alerts = Alerts()

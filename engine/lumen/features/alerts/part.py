@@ -1,4 +1,4 @@
-"""The part that sends alerts about an exhibition's trouble to people who are elsewhere."""
+"""The part that sends alerts about an exhibition's trouble to people who are not at the exhibition."""
 
 import shutil
 import threading
@@ -30,11 +30,11 @@ from lumen.statechart import Step
 from lumen.upkeep.threads import WatchedThread
 
 TIME_TO_RISE = 60.0
-"""The time in which a robot must get up [s]; one that gets up by itself takes 20."""
+"""The time limit for getting up after a fall [s]; a robot that gets up by itself needs 20 s."""
 
 
 class FallWatch:
-    """Follows the robot's commands and answers; `tick` reports each fall once if the robot does not get up."""
+    """Detects that the robot does not get up after a fall; `tick` reports each such fall only once."""
 
     def __init__(self) -> None:
         self._fallen: float | None = None
@@ -42,13 +42,13 @@ class FallWatch:
         self._failed = False
 
     def performing(self, command: Command) -> None:
-        """Note a command that makes the robot get up."""
+        """Record a command that makes the robot get up."""
         match command:
             case Start(id, Posture() | Wake()):
                 self._rising.add(id)
 
     def answered(self, event: Event, now: float) -> None:
-        """Note a fall, or the end of an attempt to get up."""
+        """Record a fall, or the result of an attempt to get up."""
         kind, _, id = event.name.partition(".command.")
         if event.name == "fallen" and self._fallen is None:
             self._fallen, self._failed, self._rising = now, False, set()
@@ -59,7 +59,7 @@ class FallWatch:
                 self._fallen, self._failed = None, False
 
     def tick(self, now: float) -> str:
-        """Return why the robot does not get up; empty if it stands, may still get up, or that was reported."""
+        """Return the trouble after a fall; empty if the robot stands, may still get up, or the fall was reported."""
         if self._fallen is None:
             return ""
         why = "it fell and can't get up" if self._failed else "it fell and has not got up"
@@ -70,13 +70,13 @@ class FallWatch:
 
 
 LEAST_ROOM = 100_000_000
-"""The free space that a disk must have [bytes]: the database, the journal and a bundle need that in a bad month."""
+"""The minimum free space of a disk [bytes], which the database, the journal and a bundle can fill in a bad month."""
 LOOK_INTERVAL = 60.0
-"""The time between two checks [s], made on a thread because a network disk may be slow."""
+"""The time between two checks of the disk [s], on a separate thread because a network disk can be slow."""
 
 
 class DiskWatch:
-    """Checks the free space of the disk with `folder`; `trouble` describes a shortage, and is empty without one."""
+    """Checks the free space of the disk with `folder`; `trouble` describes a shortage or an error, else it is empty."""
 
     def __init__(self, folder: Path) -> None:
         self.trouble = ""
@@ -98,7 +98,7 @@ class DiskWatch:
 
 
 def room(folder: Path) -> str:
-    """Return the trouble with the disk of a folder, or of its nearest existing parent; empty if there is none."""
+    """Return the trouble of the disk with a folder, or with its nearest existing parent; empty for none."""
     while not folder.exists() and folder != folder.parent:
         folder = folder.parent
     try:
@@ -109,17 +109,17 @@ def room(folder: Path) -> str:
 
 
 BROKER_PATIENCE = 5.0
-"""The absence of a broker after which it is reported [s]: a restart takes less."""
+"""The time without a broker after which its absence is reported [s]; a restart takes less time."""
 BRAIN_PATIENCE = 5.0
-"""The absence of a robot's brain after which it is reported [s]."""
+"""The time without the robot's brain after which its absence is reported [s]."""
 
 
 class AlertPart(Part, Observer):
-    """Reports trouble with the robot, the brain, the broker and the disk to an alert desk, which it owns.
+    """Reports trouble with the robot, the brain, the broker and the disk to an alert desk, which `close` closes.
 
-    It watches the brain's loop if the brain is in this process. A process with only the robot reports the robot's
-    events itself only while no brain is connected. `own` are the project's own modules. `kept` returns why the records
-    of the run can't be written, `stopped` whether a person stopped the robot.
+    If the brain is in this process, this part observes the brain's loop. A process with only the robot reports the
+    robot's events only while no brain is connected. `own` has the names of the project's own modules. `kept` returns
+    why the run's records can't be written, empty if they can; `stopped` returns whether a person stopped the robot.
     """
 
     patient = True
@@ -150,7 +150,7 @@ class AlertPart(Part, Observer):
         self._stopped: bool | None = None
 
     def recovered(self, found: Resumption | FreshStart) -> None:
-        """Report that the earlier run ended unexpectedly, unless that was reported already."""
+        """Report an unexpected end of the earlier run, unless it is already reported."""
         if isinstance(found, Resumption):
             if not found.told:
                 self._desk("crashed", f"it ended unexpectedly, and continues after {found.away:.0f} s")
@@ -158,18 +158,18 @@ class AlertPart(Part, Observer):
             self._desk("crashed", "it ended unexpectedly, and starts from the beginning")
 
     def stepped(self, step: Step) -> None:
-        """Report a stop by a person, and the loss or the return of one of the project's own modules."""
+        """Report a stop by a person, and the loss or return of the project's own modules."""
         if step.event and step.event.name == "stop" and _by_person(step.event):
             self._desk("stopped", "a person stopped it")
         if step.event and (found := told_of_own(step.event, self._own)):
             self._desk(*found)
 
     def performing(self, command: Command, now: float) -> None:
-        """Follow a command that begins."""
+        """Record a command that makes the robot get up."""
         self._falls.performing(command)
 
     def answered(self, event: Event) -> None:
-        """Follow an answer or event of the robot."""
+        """Process an answer or event from the robot, and report it if it needs an alert."""
         self._falls.answered(event, self._now)
         self._notice(event)
 
@@ -181,7 +181,7 @@ class AlertPart(Part, Observer):
                 self._desk("fallen", "it fell, and no brain is connected to get it up")
 
     def tick(self, now: float, changes: Sequence[Event]) -> None:
-        """Report falls, lost parts, and trouble with the broker, the brain and the disk."""
+        """Report falls, stops, lost or returned parts, and trouble with the broker, the brain and the disk."""
         self._now = now
         if why := self._falls.tick(now):
             self._desk("fallen", why)
@@ -195,20 +195,20 @@ class AlertPart(Part, Observer):
         self._look_at_disk("records", self._kept())
 
     def use(self, project: Project) -> None:
-        """Use the recipients and the own modules of another bundle."""
+        """Use another project's recipients and own modules."""
         self._desk.use(project.section(Alerts))
         self._own = own_modules(project.modules)
 
     def helpless(self, reason: str) -> None:
-        """Report that the robot rests because a part failed that is needed to stop the robot."""
+        """Report that the robot rests because a part that is needed to stop it has failed."""
         self._desk("crashed", "a part of Lumen failed. The robot rests, because nobody could have stopped it any more")
 
     def part_stopped(self, part: str) -> None:
-        """Report that a part failed."""
+        """Report that a part failed and is not running."""
         self._desk("lost", f"{part} failed and is not running", part)
 
     def close(self) -> None:
-        """End the check of the disk and deliver waiting alerts."""
+        """End the disk checks and deliver waiting alerts."""
         self._disk.close()
         self._desk.close()
 
@@ -217,7 +217,7 @@ class AlertPart(Part, Observer):
             self._desk(*found)
 
     def _look_for_broker(self) -> None:
-        """Report trouble with the broker, in the processes of robot and brain only, so that it is reported once."""
+        """Report trouble with the broker, but only in the processes with the robot or the brain."""
         if not {ROBOT_PART, BRAIN} & set(self._parts):
             return
         blocked, before = self._blockable.blocked if self._blockable else "", self._blocked
@@ -233,7 +233,7 @@ class AlertPart(Part, Observer):
             self._away = float("inf")
 
     def _look_for_brain(self) -> None:
-        """Report that the robot's brain is lost, unless it ended properly, or that it is back."""
+        """In a process with only the robot, report an improper loss of the brain, and the brain's return."""
         if self._presence is None or BRAIN in self._parts or ROBOT_PART not in self._parts:
             return
         if self._presence.find(BRAIN):
@@ -247,17 +247,17 @@ class AlertPart(Part, Observer):
             self._desk("lost", "the brain no longer responds, and the robot rests", BRAIN)
 
     def _look_for_stop(self) -> None:
-        """Report that a person stopped the robot, if no brain is connected that reports it."""
+        """Report that a person stopped the robot, if no brain is connected to report it."""
         before, self._stopped = self._stopped, self._person_stopped()
         if self._stopped and before is False and self._presence and self._presence.find(BRAIN) is None:
             self._desk("stopped", "a person stopped it")
 
     def _left(self, part: str) -> bool:
-        """Return whether that part has ended properly."""
+        """Return whether a part has ended properly; False if unknown."""
         return self._presence is not None and self._presence.left(part)
 
     def _look_at_disk(self, about: str, trouble: str) -> None:
-        """Report a problem of the disk when it begins."""
+        """Report the disk problem `trouble` when it begins; `about` distinguishes problems."""
         if trouble and not self._troubles.get(about):
             self._desk("disk", trouble, about)
         self._troubles[about] = trouble
@@ -285,9 +285,9 @@ def make(services: Services) -> AlertPart:
 
 
 def tell_of_failure(failure: RunFailure) -> Callable[[], None]:
-    """Send an alert that a run failed, and return the function that closes its desk.
+    """Send an alert that a run failed, and return the function that closes the alert desk.
 
-    The recipients are those of the present files, else those of the last good ones.
+    The recipients come from the present files, else from the last good files.
     """
     alerts = failure.settings.section(Alerts) if failure.settings else Alerts()
     if not alerts.to and (good := failure.last_good()):
@@ -299,9 +299,9 @@ def tell_of_failure(failure: RunFailure) -> Callable[[], None]:
 
 
 def told_of(event: Event) -> tuple[str, str, str] | None:
-    """Return the kind, text and subject of the alert about an event, None if it needs no alert.
+    """Return the kind, text and `about` of the alert for an event; None if the event needs no alert.
 
-    An event may come from anywhere on the bus, so only numbers of its data are quoted.
+    Any program on the bus can send an event, so only numbers from its data are quoted.
     """
     part, _, what = event.name.partition(".")
     match part, what:
@@ -317,10 +317,7 @@ def told_of(event: Event) -> tuple[str, str, str] | None:
 
 
 def told_of_own(event: Event, modules: Collection[str]) -> tuple[str, str, str] | None:
-    """Return the alert about the loss or return of one of the project's own modules; None for other events.
-
-    It has the form of `told_of`.
-    """
+    """Return the alert for the loss or return of a module in `modules`, as `told_of` does; None for other events."""
     module, _, what = event.name.partition(".")
     if module not in modules:
         return None
@@ -335,6 +332,6 @@ def _number(event: Event, key: str) -> str:
 
 
 def _by_person(stop: Event) -> bool:
-    """Return whether a person stopped the robot; other causes have alerts of their own."""
+    """Return whether a person stopped the robot; other causes have separate alerts."""
     by = stop.data.get("by") if isinstance(stop.data, dict) else None
     return by not in (ENGINE, RUN_BEFORE)

@@ -24,7 +24,7 @@ WHERE: NodePath = ("alerts",)
 
 
 def read_alerts(main: Mapping[str, Any], report: DocumentReport) -> Alerts:
-    """Return the recipients of alerts in the data of lumen.yaml; one without a valid channel is left out."""
+    """Return the alert recipients in the data of lumen.yaml, without recipients that have no valid channel."""
     data = main["alerts"]
     interval = duration(data, "interval", report, WHERE, positive=True)
     usual = _quiet(data)
@@ -57,7 +57,7 @@ def _channel(row: Mapping[str, Any]) -> AlertChannel | None:
 
 
 def _quiet(data: Mapping[str, Any]) -> QuietHours | None:
-    """Return the hours in `22:00-07:00`; None for `never` or nothing."""
+    """Return the quiet hours in a row, such as `22:00-07:00`; None if they are `never` or missing."""
     text = data.get("quiet", "never")
     if text == "never":
         return None

@@ -1,4 +1,4 @@
-"""The part that sends alerts about refused files."""
+"""The part that sends alerts about refused or rolled-back files."""
 
 from collections.abc import Callable, Sequence
 
@@ -12,9 +12,9 @@ from lumen.run.services import Services
 
 
 class RefusalPart(Part):
-    """Reports each time that a reloader refuses files or rolls them back.
+    """Reports each refusal or rollback of files by a reloader.
 
-    `tell` receives the kind of an alert and its text, which contains only places and codes from the files.
+    `tell` receives an alert's kind and text; about the files, the text contains only positions and codes.
     """
 
     patient = True
@@ -24,7 +24,7 @@ class RefusalPart(Part):
         self._last: ReloadReport | None = None
 
     def tick(self, now: float, changes: Sequence[Event]) -> None:
-        """Report a new refusal."""
+        """Report a new refusal or rollback."""
         report = self._reloader.last
         if report is not None and report is not self._last:
             self._last = report
@@ -33,12 +33,12 @@ class RefusalPart(Part):
 
 
 def make(services: Services) -> RefusalPart:
-    """Make the part that sends alerts about refused files."""
+    """Make the part that sends alerts about refused or rolled-back files."""
     return RefusalPart(services[Reloader], services[AlertDesk])
 
 
 def refusal(report: ReloadReport) -> str:
-    """Return the alert's text about a report, empty if it needs no alert."""
+    """Return the alert text for a report; empty if the report needs no alert."""
     if report.verdict == "rolled back":
         return "the saved files failed while they were in use: the previous files are active again"
     if report.verdict != "refused":

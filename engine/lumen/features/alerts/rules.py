@@ -26,7 +26,7 @@ _VARIABLE = re.compile(r"\$[A-Za-z_][A-Za-z0-9_]*")
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report errors in the recipients of alerts."""
+    """Report errors in alert recipients and quiet hours."""
     settings, report = draft.settings, draft.main
     data = report.document.data.get("alerts") if report and isinstance(report.document.data, Mapping) else None
     if settings is None or report is None or not isinstance(data, Mapping):
@@ -49,7 +49,7 @@ def check(draft: ProjectDraft) -> None:
 
 
 def _way(report: DocumentReport, row: Mapping[str, Any], where: NodePath) -> None:
-    """Report a recipient without exactly one of the three ways, unless an error of these was reported already."""
+    """Report a recipient without exactly one of `WAYS`, unless an error in this recipient is already reported."""
     said = [way for way in WAYS if way in row]
     if len(said) == 1 or any(path[: len(where)] == where for path in report.pruned):
         return

@@ -1,4 +1,4 @@
-"""The recipients of alerts, with the kinds, times and ways of their alerts."""
+"""The recipients of alerts, with the kinds, quiet hours and channels of their alerts."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -22,9 +22,9 @@ KINDS: Mapping[str, str] = {
 """The kinds of alerts, with their descriptions."""
 
 DEFAULT_INTERVAL = 900.0
-"""The default time in which an alert is not repeated [s]."""
+"""The default time for which an equal alert is not repeated [s]."""
 SMTP_PORTS: Mapping[str, int] = {"starttls": 587, "tls": 465, "none": 25}
-"""The usual port for each kind of a mail server's encryption."""
+"""A mail server's usual port for each type of encryption."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,7 +36,7 @@ class Webhook:
 
 @dataclass(frozen=True, slots=True)
 class Mail:
-    """A mail by SMTP."""
+    """An email, sent by SMTP."""
 
     host: str
     port: int
@@ -58,7 +58,7 @@ AlertChannel: TypeAlias = Webhook | Mail | Program
 
 @dataclass(frozen=True, slots=True)
 class QuietHours:
-    """The hours from one time of day to another, across midnight if the second is earlier."""
+    """The hours from `begin` to `end`, two times of day; across midnight if `end` is earlier."""
 
     begin: time
     end: time
@@ -72,19 +72,19 @@ class QuietHours:
 
 @dataclass(frozen=True, slots=True)
 class Recipient:
-    """A recipient of alerts, with its place `where` in lumen.yaml."""
+    """A recipient of alerts, and its path `where` in lumen.yaml."""
 
     channel: AlertChannel
     kinds: tuple[str, ...] = tuple(KINDS)
     """The kinds of alerts to send."""
     quiet: QuietHours | None = None
-    """The hours in which alerts are held back, None for none."""
+    """The hours in which alerts are held back; None for none."""
     where: NodePath = field(default=(), compare=False)
 
 
 @dataclass(frozen=True, slots=True)
 class Alerts:
-    """The recipients; each gets the same alert at most once in `interval` [s]."""
+    """The recipients; each recipient receives equal alerts at most once per `interval` [s]."""
 
     to: tuple[Recipient, ...] = ()
     interval: float = DEFAULT_INTERVAL

@@ -1,4 +1,4 @@
-"""Delivers an alert by email, to the standard input of a program, or as a POST with JSON."""
+"""Delivers an alert by email, to a program's standard input, or as a POST with JSON."""
 
 import json
 import os
@@ -20,13 +20,13 @@ from lumen.errors import UndeliveredError
 from lumen.features.alerts.settings import Mail
 
 MAIL_TIMEOUT = 20.0
-"""The time for which the server may be silent [s]."""
+"""The maximum wait for each answer of the mail server [s]."""
 USER, PASSWORD = "LUMEN_SMTP_USER", "LUMEN_SMTP_PASSWORD"
-"""The environment variables with the user and the password of the mail server; without a user there is no login."""
+"""The environment variables with the mail server's user and password; without a user, Lumen does not log in."""
 
 
 def send_mail(mail: Mail, line: str, body: dict[str, Any]) -> None:
-    """Send the mail to all recipients. Raises UndeliveredError if the server refuses it for any of them."""
+    """Send an email to all recipients of `mail`. Raises UndeliveredError if that fails for any recipient."""
     message = EmailMessage()
     message["Subject"], message["From"], message["To"] = f"[Lumen] {line}", mail.sender, ", ".join(mail.to)
     message["Date"], message["Message-ID"] = formatdate(), make_msgid(domain="lumen.invalid")
@@ -78,13 +78,13 @@ def _connected(mail: Mail) -> smtplib.SMTP:
 
 
 PROGRAM_TIMEOUT = 30.0
-"""The time that the program may take [s]; then it is killed, with all processes that it has started."""
+"""The time limit of the program [s], after which it is killed."""
 
 
 def run_program(command: Sequence[str], body: dict[str, Any], root: Path) -> None:
     """Run the program in the project's folder with `body` as JSON on its standard input, and wait for its end.
 
-    Raises UndeliveredError unless its exit code is 0.
+    Then kill all processes that it has started. Raises UndeliveredError unless its exit code is 0.
     """
     name = command[0]
     if os.path.basename(name) != name:
@@ -128,23 +128,26 @@ def _end(process: "subprocess.Popen[bytes]") -> None:
 
 
 POST_TIMEOUT = 10.0
-"""The time for which the server may be silent [s]."""
+"""The maximum wait for each answer of the web server [s]."""
 PASSING = (408, 425, 429, *range(500, 600))
 """The HTTP statuses after which another attempt may succeed."""
 TOKEN = "LUMEN_ALERT_TOKEN"
-"""The environment variable with the token that is sent to each webhook, as `Authorization: Bearer`."""
+"""The environment variable with the token for all webhooks, which is sent as `Authorization: Bearer`."""
 
 
 class _Stay(urllib.request.HTTPRedirectHandler):
-    """Follows no redirect, because it may lead anywhere, and a POST would become a GET."""
+    """Rejects redirects, which may lead to any server, and would turn a POST into a GET."""
 
     def redirect_request(self, *arguments: Any) -> None:
-        """Return None: do not redirect."""
+        """Return None, which rejects the redirect."""
         return None
 
 
 def post(url: str, body: dict[str, Any]) -> None:
-    """Send the body as JSON; a status from 200 to 299 is a success. Raises UndeliveredError otherwise."""
+    """Send the body as JSON to `url`, or to the URL in the environment variable NAME if `url` is `$NAME`.
+
+    Raises UndeliveredError unless the server answers with a status from 200 to 299.
+    """
     if url.startswith("$"):
         url = _of_variable(url[1:])
     head = {"Content-Type": "application/json", "User-Agent": "lumen"}
@@ -163,14 +166,14 @@ def post(url: str, body: dict[str, Any]) -> None:
         raise UndeliveredError(f"the server can't be reached: {error.reason}") from None
     except (TimeoutError, ConnectionError) as error:
         raise UndeliveredError(f"the server can't be reached: {error}") from None
-    except (OSError, ValueError, HTTPException) as error:  # its text may contain the address, which may be a secret
+    except (OSError, ValueError, HTTPException) as error:  # its text may contain the URL, which may be secret
         raise UndeliveredError(f"the request failed: {type(error).__name__}") from None
 
 
 def _of_variable(name: str) -> str:
     """Return the URL in an environment variable.
 
-    Raises UndeliveredError without quoting it, since it may be a secret.
+    Raises UndeliveredError if it is missing or invalid, without quoting the URL, which may be secret.
     """
     url = os.environ.get(name, "").strip()
     if not url:

@@ -52,7 +52,7 @@ class MotionPlayer:
     def begin(self, motion: MotionDefinition, owned: Collection[str]) -> CallSequence:
         """Return the activity of a motion.
 
-        Joints of the body parts `owned` move to the starting posture before the motion if necessary, and after an abort.
+        Joints of the parts `owned` move to the starting posture before the motion if necessary, and after cancelling.
         """
         shared = self._body.shared
         home = {name: angle for name, angle in home_angles(motion, self._body, owned).items() if name not in shared}

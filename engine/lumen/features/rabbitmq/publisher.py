@@ -60,10 +60,10 @@ class Publisher(BrokerConnection):
 
     The thread that publishes a message also sends it; the connection's own thread receives confirmations and sends
     messages that had to wait. At most `MAX_UNCONFIRMED_MESSAGES` are sent without confirmation. After a connection
-    loss, unconfirmed messages that must arrive are resent first. Keys without a receiver are logged with the nearest of the
-    `known` keys. `journals` are the queues that keep outgoing messages until a module reads them. `returned` is called
-    with the key of each message without a receiver. If it is None, the broker returns only messages that must arrive
-    and messages under keys passed to `heard`.
+    loss, unconfirmed messages that must arrive are resent first. Keys without a receiver are logged with the nearest
+    of the `known` keys. `journals` are the queues that store outgoing messages until a module reads them. `returned` is
+    called with the key of each message without a receiver. If it is None, the broker returns only messages that must
+    arrive and messages under keys passed to `heard`.
     """
 
     def __init__(self, address: BrokerAddress, name: str, outage: OutageLog) -> None:

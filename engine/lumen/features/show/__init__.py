@@ -1,4 +1,4 @@
-"""Lamps, screens and sounds of a hall."""
+"""Control of a hall's lamps, screens and sound desks."""
 
 from lumen.feature import Feature, ModuleRow, Section
 

@@ -1,4 +1,4 @@
-"""Bodies as OSC messages: fields as arguments of the types in their schema (OSC 1.0)."""
+"""Bodies as OSC messages (OSC 1.0): fields as arguments, with the types in their schema."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -12,7 +12,7 @@ from lumen.project.message_fields import FieldKind, SchemaField
 
 
 def message_of(address: str, body: Any, fields: Sequence[SchemaField]) -> bytes:
-    """Return the body's fields as a message to that address. Raises ModuleError if they can't be carried."""
+    """Return the body's fields as a message to `address`. Raises ModuleError if a field is missing or does not fit."""
     builder = OscMessageBuilder(address)
     for field in fields:
         if not isinstance(body, Mapping) or field.name not in body:
@@ -26,7 +26,7 @@ def message_of(address: str, body: Any, fields: Sequence[SchemaField]) -> bytes:
 
 
 def messages_of(data: bytes) -> list[tuple[str, list[Any]]]:
-    """Return the messages in a datagram, including those of bundles. Raises ModuleError if it is not OSC."""
+    """Return a datagram's messages, including those in bundles. Raises ModuleError if it is not OSC."""
     try:
         return [(timed.message.address, list(timed.message.params)) for timed in OscPacket(data).messages]
     except (ParseError, RecursionError, ValueError, IndexError, OverflowError) as error:
@@ -34,7 +34,7 @@ def messages_of(data: bytes) -> list[tuple[str, list[Any]]]:
 
 
 def body_of_arguments(arguments: Sequence[Any], fields: Sequence[SchemaField]) -> dict[str, Any]:
-    """Return the arguments by the names of the fields. Raises ModuleError if their number or types differ."""
+    """Return the arguments by field name. Raises ModuleError if their number or types do not match the fields."""
     if len(arguments) != len(fields):
         names = ", ".join(field.name for field in fields) or "none"
         raise ModuleError(f"arguments in the message: {len(arguments)}; fields of the route: {len(fields)} ({names})")
@@ -59,7 +59,10 @@ def _argument(field: SchemaField, value: Any) -> tuple[str, Any]:
 
 
 def _value(field: SchemaField, value: Any) -> Any:
-    """Return an argument in the field's type: desks send integers as floats, and booleans as 1 and 0."""
+    """Convert an argument to the field's type, because desks send integers as floats, and booleans as 1 and 0.
+
+    Raises ModuleError if that is impossible.
+    """
     number = is_finite_number(value)
     match field.kind:
         case FieldKind.NUMBER if number:

@@ -1,4 +1,4 @@
-"""Bodies as channels of DMX, and a universe of them as a packet of sACN (ANSI E1.31-2018)."""
+"""Bodies as DMX channels, and a universe of channels as an sACN packet (ANSI E1.31-2018)."""
 
 import struct
 from typing import Any
@@ -8,18 +8,18 @@ from lumen.project.message_fields import SchemaField
 
 CHANNELS = 512
 PORT = 5568
-"""The port of sACN (E1.31, 9.2)."""
+"""The UDP port of sACN (E1.31, 9.2)."""
 PRIORITY = 100
-"""The usual priority (E1.31, 6.2.3): of several sources, a receiver uses the highest."""
+"""The default priority (E1.31, 6.2.3); a receiver uses the source with the highest priority."""
 FULL = 255
 _LAYOUT = struct.Struct(">HH12sHI16sHI64sBHBBHHBBHHH")
 _TERMINATED = 0x40
 
 
 def channel_level(value: Any, field: SchemaField) -> int:
-    """Return the level from 0 to 255 of a value in the field's range, limited to it; True is 255, False is 0.
+    """Map a value, limited to the field's range, to a level from 0 to 255; True is 255, False is 0.
 
-    Raises ModuleError if it is neither a number nor a boolean.
+    Raises ModuleError if the value is neither a number nor a boolean.
     """
     if isinstance(value, bool):
         return FULL * value
@@ -50,5 +50,5 @@ def multicast_group(universe: int) -> str:
 
 
 def _length(offset: int) -> int:
-    """Return the flags and length of a layer that begins at that byte and ends with the packet."""
+    """Return the flags and length of a layer that begins at the byte `offset` and ends with the packet."""
     return 0x7000 | (_LAYOUT.size + 1 + CHANNELS - offset)

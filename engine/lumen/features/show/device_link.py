@@ -6,7 +6,8 @@ from typing import Any, Protocol
 TakeFromDevice = Callable[[str, str, Callable[[], Any]], None]
 """A function that receives a device's message.
 
-Its arguments are the route, the place on the device, and a function that returns the body or raises ModuleError.
+Its arguments are the route, the source for reports, such as a topic, and a function that returns the body or raises
+ModuleError.
 """
 
 
@@ -23,7 +24,7 @@ class DeviceLink(Protocol):
     def send(self, route: str, body: Any) -> None: ...
 
     def tick(self) -> None:
-        """Do regular work; called several times a second."""
+        """Do regular work, such as reconnecting; called several times a second."""
         ...
 
     def close(self) -> None: ...

@@ -1,4 +1,4 @@
-"""A DMX universe over sACN: the newest level of each channel, sent at each change and repeated."""
+"""A DMX universe over sACN: the newest level of each channel, sent after each message and repeated."""
 
 import ipaddress
 import socket
@@ -15,17 +15,17 @@ from lumen.features.show.settings import DmxLink
 from lumen.project.message_fields import SchemaField
 
 KEEP_ALIVE = 0.8
-"""The time between two packets with unchanged levels [s]; E1.31 (6.6.2) wants 0.8 to 1.0."""
+"""The time between two packets with unchanged levels [s]; E1.31 (6.6.2) requires 0.8 to 1.0."""
 GOODBYES = 3
-"""The number of packets that announce the end (E1.31, 6.2.6)."""
+"""The number of packets that announce the end of the stream (E1.31, 6.2.6)."""
 MULTICAST_REACH = 8
-"""The most routers that multicast may pass."""
+"""The time to live of multicast packets [hops]."""
 
 
 class DmxUniverse:
-    """Sends one universe. Nothing is sent before the first message, so that a start does not darken the hall.
+    """Sends one universe, beginning with the first message: a start does not darken the hall.
 
-    A channel is 0 if it has no field, or its field has no value yet; a field missing from a body keeps its level.
+    A channel is 0 if it has no field, or its field has no value yet. A field missing from a body keeps its level.
     """
 
     def __init__(
@@ -50,10 +50,10 @@ class DmxUniverse:
         return self._link.routes
 
     def begin(self) -> None:
-        """Do nothing: DMX has no answers, so there is no connection."""
+        """Do nothing, because sACN needs no connection."""
 
     def send(self, route: str, body: Any) -> None:
-        """Send the levels of a body's fields. Raises ModuleError if a value is invalid."""
+        """Send the levels of a body's fields. Raises ModuleError if the body has no fields or a value is invalid."""
         if not isinstance(body, Mapping):
             raise ModuleError("the body has no fields")
         wanted = {
@@ -66,13 +66,13 @@ class DmxUniverse:
         self._transmit()
 
     def tick(self) -> None:
-        """Repeat the levels if they are due, and update the health."""
+        """Repeat the levels after KEEP_ALIVE, and update the link's health."""
         if self._sent is not None and self._clock() - self._sent >= KEEP_ALIVE:
             self._transmit()
         self._health.tick()
 
     def close(self) -> None:
-        """Announce the end, and close the socket."""
+        """Announce the end of a stream that has begun, and close the socket."""
         if self._sent is not None:
             for _ in range(GOODBYES):
                 self._transmit(terminated=True)

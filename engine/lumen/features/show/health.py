@@ -1,12 +1,12 @@
-"""Reports that a device is gone, and that it is back once it stays connected."""
+"""Reports that a device is gone, and that it is back when it stays connected."""
 
 import time
 from collections.abc import Callable
 
 STEADY = 3.0
-"""The time that a device must stay connected before it is reported as back [s].
+"""The time for which a device must stay connected before it is reported as back [s].
 
-A device that comes and goes is thus reported once.
+An unstable connection is thus reported only once.
 """
 
 
@@ -28,7 +28,7 @@ class LinkHealth:
         self._up_since: float | None = None
 
     def down(self, why: str) -> None:
-        """Report that the device is gone."""
+        """Report that the device is gone, with the reason `why`."""
         self._ill, self._up_since = True, None
         self._tell(f"{self.device} {why}")
 

@@ -1,4 +1,4 @@
-"""Show control: routes of the exhibition to and from lamps, screens and sound desks that use MQTT, OSC or DMX.
+"""Show control: the exhibition's routes to and from lamps, screens and sound desks that use MQTT, OSC or DMX.
 
 show_control.py   the module: outgoing and incoming messages, limited and checked
 health.py         reports once that a device is gone, and that it is back

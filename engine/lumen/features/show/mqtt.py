@@ -1,4 +1,4 @@
-"""An MQTT 3.1.1 broker: routes as topics, by Eclipse Paho on a thread of its own."""
+"""An MQTT 3.1.1 broker with routes as topics, through Eclipse Paho on a separate thread."""
 
 import os
 import secrets
@@ -22,7 +22,7 @@ from lumen.upkeep.threads import WatchedThread
 
 
 def payload_of(body: Any, field: SchemaField | None) -> bytes:
-    """Return the body as JSON, or its field as plain text. Raises ModuleError if it can't be carried."""
+    """Return the body as JSON, or only `field` as plain text. Raises ModuleError if that is missing or invalid."""
     if field is None:
         return _json(body)
     if not isinstance(body, dict) or field.name not in body:
@@ -35,7 +35,7 @@ def payload_of(body: Any, field: SchemaField | None) -> bytes:
 
 
 def body_of_payload(payload: bytes, field: SchemaField | None) -> Any:
-    """Return the body of a payload. Raises ModuleError if it is neither valid JSON nor text, as the field requires."""
+    """Return the body from a payload, which is text for a string field, else JSON. Raises ModuleError if invalid."""
     if field and field.kind is FieldKind.STRING:
         try:
             return {field.name: payload.decode()}
@@ -56,23 +56,23 @@ def _json(value: Any) -> bytes:
 
 
 CREDENTIALS_VARIABLE = "LUMEN_MQTT_CREDENTIALS"
-"""The environment variable that names a file with `NAME:PASSWORD`."""
+"""The environment variable with the path of a file that contains `NAME:PASSWORD`."""
 MAX_PAYLOAD = 65_536
-"""The largest payload that is accepted [bytes]."""
+"""The maximum size of an accepted payload [bytes]."""
 MAX_WAITING = 1_000
-"""The most messages that may wait for the broker's acknowledgement."""
+"""The maximum number of messages that wait for the broker's acknowledgement."""
 FIRST_PAUSE, LONGEST_PAUSE = 1, 30
-"""The first and the longest pause between two attempts to connect [s]; each is twice as long as the last."""
+"""The first and the longest pause between two attempts to connect [s]; the pause doubles each time."""
 KEEP_ALIVE = 15
-"""The time without messages after which the broker is pinged [s]."""
+"""The time without messages after which Lumen pings the broker [s]."""
 
 
 class MqttBroker:
     """Publishes routes of `link`, and passes messages on the topics of `incoming` to `deliver`.
 
-    A `carried: telemetry` route is sent at most once (QoS 0), any other at least once (QoS 1). While the broker is
-    away, nothing waits, since a late command is worse than none; only the newest message of each retained topic is sent
-    later.
+    Messages of `carried: telemetry` routes are sent at most once (QoS 0), all others at least once (QoS 1). While the
+    broker is away, messages are refused, because a late command is worse than none. Only the newest message of each
+    retained topic is sent later.
     """
 
     def __init__(
@@ -100,11 +100,11 @@ class MqttBroker:
         return self._link.routes
 
     def begin(self) -> None:
-        """Start to connect."""
+        """Start connecting, without waiting."""
         self._thread.start()
 
     def send(self, route: str, body: Any) -> None:
-        """Publish a body; while the broker is away, a retained one waits for it.
+        """Publish a body; while the broker is away, keep the body of a retained topic for later.
 
         Raises ModuleError if the body can't be sent, or if the broker is away and the topic is not retained.
         """
@@ -119,7 +119,7 @@ class MqttBroker:
         self._publish(mapping.topic, payload, row, retain=mapping.retain)
 
     def tick(self) -> None:
-        """Update the health of the connection."""
+        """Update the connection's health."""
         if self._client.is_connected():
             self._health.up()
         self._health.tick()

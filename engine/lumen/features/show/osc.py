@@ -1,4 +1,4 @@
-"""A device that receives Open Sound Control over UDP, and may send it to a port of this computer."""
+"""A device that receives Open Sound Control (OSC) over UDP, and can send it to a port of this computer."""
 
 import socket
 import time
@@ -18,7 +18,7 @@ from lumen.upkeep.threads import WatchedThread
 POLL = 0.5
 """The time between two checks whether a listener should end [s]."""
 RETRY = 5.0
-"""The time between two attempts with a port that was taken, or a name that was unknown [s]."""
+"""The time between two attempts to listen, for example while the port is in use [s]."""
 MAX_DATAGRAM = 65_535
 """The largest UDP datagram [bytes]."""
 
@@ -26,8 +26,8 @@ MAX_DATAGRAM = 65_535
 class OscDevice:
     """Sends routes of `link` to the device, and passes its messages on the routes `incoming` to `deliver`.
 
-    Messages from other senders are dropped and counted. An unknown name of the device, or a port that is taken, is
-    reported and tried again.
+    Messages from other senders are dropped and counted. An unknown device name, or a port in use, is reported, and the
+    attempt is repeated.
     """
 
     def __init__(
@@ -54,12 +54,12 @@ class OscDevice:
         return self._link.routes
 
     def begin(self) -> None:
-        """Open the socket if possible."""
+        """Open the socket if possible; a failure is only reported."""
         with suppress(OSError):
             self._opened()
 
     def send(self, route: str, body: Any) -> None:
-        """Send a body on a route. Raises ModuleError if that fails."""
+        """Send a body on a route. Raises ModuleError if the body is invalid or the device can't be reached."""
         message = message_of(self._link.routes[route].address, body, self._fields[route])
         try:
             self._opened().sendto(message, self._device)
@@ -141,7 +141,7 @@ class OscDevice:
 
 
 def _own_address(family: int, device: Any) -> str:
-    """Return the local address on the device's network, so that no other network is listened to."""
+    """Return the local address on the device's network; listening on that address excludes other networks."""
     with socket.socket(family, socket.SOCK_DGRAM) as probe:
         probe.connect(device)
         return str(probe.getsockname()[0])

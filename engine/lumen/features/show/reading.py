@@ -10,7 +10,7 @@ from lumen.project.sections import read_fields
 
 
 def read_show(main: Mapping[str, Any], report: DocumentReport) -> Show:
-    """Return the devices in the data of lumen.yaml; a link that was refused is left out."""
+    """Return the devices in the data of lumen.yaml, with MQTT's default port if none is given."""
     data = main["modules"][SHOW]
     mqtt = data.get("mqtt", {})
     port = MQTT_TLS_PORT if mqtt.get("tls") else MQTT_PORT

@@ -15,9 +15,9 @@ SHOW_DIRECTION = Code("show-direction", "routes", ERROR, "a device can't send on
 SHOW_FIELD = Code("show-field", "routes", ERROR, "a field of a message can't be sent to or from a device")
 
 MAX_TOPIC_BYTES = 65_535
-"""The longest topic of MQTT 3.1.1 (4.7.3)."""
+"""The maximum length of a topic in MQTT 3.1.1 (4.7.3) [bytes]."""
 _OSC_RESERVED = " #*,?[]{}"
-"""Characters that an OSC address may not contain (OSC 1.0)."""
+"""The characters that an OSC address must not contain (OSC 1.0)."""
 
 
 def check(draft: ProjectDraft) -> None:
@@ -35,13 +35,13 @@ def check(draft: ProjectDraft) -> None:
 
 
 class _Ways:
-    """The rules of each link; `draft` has settings."""
+    """The rules for each link; `draft` must have settings."""
 
     def __init__(self, draft: ProjectDraft, report: DocumentReport) -> None:
         self.draft, self.report = draft, report
 
     def mqtt(self, link: MqttLink) -> None:
-        """Report errors in the topics and fields of MQTT."""
+        """Report errors in the MQTT link's topics, fields and directions."""
         path, taken = (*SHOW_PATH, "mqtt", "routes"), dict[str, str]()
         for name, row in link.routes.items():
             where = _value(self.report, (*path, name), "topic")
@@ -57,7 +57,7 @@ class _Ways:
                 self.field(route, field, where, kinds, "a plain-text message can be only a text, a number or a boolean")
 
     def osc(self, link: OscLink) -> None:
-        """Report errors in the addresses and arguments of OSC."""
+        """Report errors in the OSC link's addresses, arguments and directions."""
         path, taken = (*SHOW_PATH, "osc", "routes"), dict[str, str]()
         for name, row in link.routes.items():
             where = _value(self.report, (*path, name), "address")
@@ -74,7 +74,7 @@ class _Ways:
             self.arguments(route, link.routes[name].fields, (*path, name))
 
     def dmx(self, link: DmxLink) -> None:
-        """Report errors in the channels of DMX."""
+        """Report errors in the DMX link's channels, fields and directions."""
         path, taken = (*SHOW_PATH, "dmx", "routes"), dict[int, NodePath]()
         for name, channels in link.routes.items():
             for field, channel in channels.items():
@@ -100,14 +100,14 @@ class _Ways:
                     self.report(SHOW_FIELD, where, message, hint, key=True)
 
     def routes(self, path: NodePath, names: Mapping[str, object]) -> Iterator[tuple[str, Route]]:
-        """Yield the routes that lumen.yaml has; report the others."""
+        """Yield the named routes that lumen.yaml has; report unknown names."""
         assert self.draft.settings
         for name in names:
             if known_route(self.draft, self.report, (*path, name), name, key=True):
                 yield name, self.draft.settings.routes[name]
 
     def may_come(self, route: Route, path: NodePath) -> bool:
-        """Return whether a route is outgoing, or open to messages of devices; report any other route."""
+        """Return whether a route is outgoing, or open to messages from devices; report any other route."""
         if route.direction is Direction.OUT or may_come_from_devices(route):
             return True
         message = f"`{route.name}` has one of Lumen's own keys ({route.key}), on which devices may not send"
@@ -116,13 +116,13 @@ class _Ways:
         return False
 
     def twice(self, taken: dict[str, str], place: str, name: str, path: NodePath) -> None:
-        """Report a topic or address that another route uses already."""
+        """Report a topic or address that another route already uses."""
         if (other := taken.setdefault(place, name)) != name:
             message = f"`{other}` already uses `{place}`: the messages of the two routes would mix"
             self.report(SHOW_ADDRESS, path, message, "give each route its own topic or address")
 
     def arguments(self, route: Route, fields: tuple[str, ...] | None, path: NodePath) -> None:
-        """Check each field that becomes an argument: `fields`, or those of the schema if `fields` is None."""
+        """Report errors in the fields that become arguments: `fields`, or all schema fields if `fields` is None."""
         known, kinds = self.fields(route), (FieldKind.STRING, FieldKind.NUMBER, FieldKind.INTEGER, FieldKind.BOOLEAN)
         can = "an argument can be only a text, a number or a boolean"
         if fields is None and not known:
@@ -144,7 +144,10 @@ class _Ways:
         *,
         key: bool = False,
     ) -> SchemaField | None:
-        """Return the field if the body has it and its kind is allowed; else report it and return None."""
+        """Return the field if the schema has it and its kind is allowed; else report an error and return None.
+
+        If the route's schema is unusable, only return None.
+        """
         known = self.fields(route)
         if name not in known:
             if self.has_schema(route):
@@ -160,16 +163,16 @@ class _Ways:
         return known[name]
 
     def fields(self, route: Route) -> Mapping[str, SchemaField]:
-        """Return the fields of a route's bodies, by name."""
+        """Return the fields of a route's schema, by name."""
         return message_fields(self.draft.messages.get(route.schema))
 
     def has_schema(self, route: Route) -> bool:
-        """Return whether the route's schema is usable, so that a missing field is an error of the route."""
+        """Return False if the route's schema is unusable, in which case a missing field is not the route's error."""
         return not route.schema or route.schema in self.draft.messages
 
 
 def _value(report: DocumentReport, path: NodePath, name: str) -> NodePath:
-    """Return the path of a value that is written alone or under its name."""
+    """Return the path of the value `name`, which may be written without its name in a short form."""
     long = (*path, name)
     return long if long in report.document.spans else path
 

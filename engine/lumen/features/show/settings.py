@@ -1,4 +1,4 @@
-"""Show control: the routes that go to devices with MQTT, OSC or DMX, and those that come from there."""
+"""Show control: the routes to and from devices with MQTT, OSC or DMX."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -27,12 +27,12 @@ class AddressMapping:
 
     address: str
     fields: tuple[str, ...] | None = None
-    """The fields that are its arguments; None for those of its schema, in that order."""
+    """The fields that become the arguments, in order; None for all fields of the schema."""
 
 
 @dataclass(frozen=True, slots=True)
 class MqttLink:
-    """An MQTT broker, and the routes that it carries."""
+    """An MQTT broker, and its routes."""
 
     host: str
     port: int = MQTT_PORT
@@ -47,7 +47,7 @@ class OscLink:
     host: str
     port: int
     listen: int | None = None
-    """The local port for the device's messages; None to receive none."""
+    """The local port for the device's messages; None to receive no messages."""
     routes: Mapping[str, AddressMapping] = field(default_factory=dict)
 
 
@@ -72,7 +72,7 @@ class Show:
 
     @property
     def routes(self) -> frozenset[str]:
-        """All routes that any of the links carries."""
+        """The routes of all links."""
         return frozenset(name for link in (self.mqtt, self.osc, self.dmx) if link for name in link.routes)
 
 
@@ -81,8 +81,8 @@ SHOW_PATH: NodePath = ("modules", "show")
 
 
 def may_come_from_devices(route: Route) -> bool:
-    """Return whether devices may send on a route: an incoming one whose key is not one of Lumen's own.
+    """Return whether devices may send on a route: only on incoming routes whose keys are not Lumen's own.
 
-    So no device can command a robot.
+    Therefore no device can command a robot.
     """
     return route.direction is Direction.IN and route.key.split(".")[0] not in KEY_PREFIXES

@@ -1,4 +1,4 @@
-"""The module `show`: sends messages to devices, and limits, checks and counts what they send."""
+"""The module `show`, which sends messages to devices, and limits, checks and counts the devices' messages."""
 
 import socket
 import threading
@@ -26,10 +26,9 @@ TICK = 0.2
 
 
 class ShowControl(Module):
-    """Carries routes to the devices of `modules.show`, and their messages to routes that may come from devices.
+    """Sends routes to the devices of `modules.show`, and publishes the devices' messages on permitted routes.
 
-    A device that is missing, or a message that can't be carried, is only reported. A change of the settings opens new
-    connections.
+    Missing devices, and messages that can't be sent, are only reported. Changed settings open new connections.
     """
 
     name = SHOW
@@ -47,7 +46,7 @@ class ShowControl(Module):
         return sum(self._refused.counts.values())
 
     def hears(self) -> Mapping[str, MessageHandler]:
-        """Return the handlers of the outgoing routes."""
+        """Return the handlers of the outgoing routes, by route."""
         show, routes = self.project.section(Show), self.project.routes
         out = [name for name in show.routes if name in routes and routes[name].direction is Direction.OUT]
         return {name: partial(self._send, name) for name in sorted(out)}
@@ -61,7 +60,7 @@ class ShowControl(Module):
         return TICK
 
     def end(self) -> None:
-        """Close the links."""
+        """Close the links, and report refused messages."""
         self._unlink()
         self._refused.tell(all=True)
 
@@ -75,7 +74,7 @@ class ShowControl(Module):
                     self._refused.add(f"{route} ({name.upper()})", str(error))
 
     def _deliver(self, route: str, place: str, make: Callable[[], Any]) -> None:
-        """Publish what a device sent; called on the links' threads."""
+        """Publish a device's message, within the route's rate; called on the links' threads."""
         row = self.project.routes.get(route)
         if row is None or not may_come_from_devices(row):
             self._refused.add(place, f"devices may not send to the route `{route}`")
@@ -92,7 +91,7 @@ class ShowControl(Module):
             self._refused.add(place, str(error))
 
     def _link(self) -> None:
-        """Open the links of the present settings if they differ from the open ones."""
+        """Reopen all links if the show settings, routes or message schemas have changed."""
         show, routes, messages = self.project.section(Show), self.project.routes, self.project.messages
         before = self._linked
         if before and (before.section(Show), before.routes, before.messages) == (show, routes, messages):
@@ -152,9 +151,9 @@ class ShowControl(Module):
         return DmxUniverse(link, fields, f"Lumen {self.project.robot}", self._health(f"DMX universe {link.universe}"))
 
     def _foreign(self, link: MqttLink) -> Mapping[str, TopicMapping]:
-        """Return the routes except those that the bus's own broker carries as MQTT; report these.
+        """Return the link's routes, without those that the bus's own broker already carries as MQTT.
 
-        Their messages would circulate for ever.
+        Report the routes left out; their messages would circulate forever.
         """
         project, routes = self.project, dict(link.routes)
         broker = self.bus.ability(UsesBroker)
@@ -174,13 +173,13 @@ class ShowControl(Module):
         return [name for name in routes if name in known and known[name].direction is Direction.IN]
 
     def _fields(self, route: str) -> Mapping[str, SchemaField]:
-        """Return the fields of a route's bodies."""
+        """Return the fields of a route's bodies, by name; empty for an unknown route."""
         row = self.project.routes.get(route)
         return message_fields(self.project.messages.get(row.schema) if row else None)
 
 
 def same_machine(one: str, other: str) -> bool:
-    """Return whether two names have an address in common; False for an empty name."""
+    """Return whether two host names are equal or share an address; False for an empty or unknown name."""
     if not one or one == other:
         return bool(one)
     try:

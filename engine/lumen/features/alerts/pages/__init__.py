@@ -1,1 +1,1 @@
-"""The explain pages of alerts."""
+"""The explain pages for alerts."""

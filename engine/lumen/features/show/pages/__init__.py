@@ -1,1 +1,1 @@
-"""The explain pages of show control."""
+"""The explain pages for show control."""
