@@ -32,7 +32,7 @@ class Ration:
         self._held[key] = alert.after(earlier) if earlier else alert
 
     def due(self, now: float, *, quiet: bool) -> Iterator[Alert]:
-        """Yield the alerts that are due at `now` [s, monotonic], the oldest first, and count them as sent.
+        """Yield the alerts that are due at `now` [s, monotonic], in order of arrival, and count them as sent.
 
         If `quiet`, yield no alerts.
         """

@@ -98,7 +98,7 @@ class DiskWatch:
 
 
 def room(folder: Path) -> str:
-    """Return the trouble of the disk with a folder, or with its nearest existing parent; empty for none."""
+    """Return the problem of the disk with a folder, or with its nearest existing parent; empty for none."""
     while not folder.exists() and folder != folder.parent:
         folder = folder.parent
     try:
@@ -233,7 +233,7 @@ class AlertPart(Part, Observer):
             self._away = float("inf")
 
     def _look_for_brain(self) -> None:
-        """In a process with only the robot, report an improper loss of the brain, and the brain's return."""
+        """In a process with only the robot, report the brain's loss, unless it ended properly, and its return."""
         if self._presence is None or BRAIN in self._parts or ROBOT_PART not in self._parts:
             return
         if self._presence.find(BRAIN):

@@ -20,7 +20,7 @@ from lumen.errors import UndeliveredError
 from lumen.features.alerts.settings import Mail
 
 MAIL_TIMEOUT = 20.0
-"""The maximum wait for each answer of the mail server [s]."""
+"""The maximum wait for each answer from the mail server [s]."""
 USER, PASSWORD = "LUMEN_SMTP_USER", "LUMEN_SMTP_PASSWORD"
 """The environment variables with the mail server's user and password; without a user, Lumen does not log in."""
 
@@ -128,7 +128,7 @@ def _end(process: "subprocess.Popen[bytes]") -> None:
 
 
 POST_TIMEOUT = 10.0
-"""The maximum wait for each answer of the web server [s]."""
+"""The maximum wait for each answer from the web server [s]."""
 PASSING = (408, 425, 429, *range(500, 600))
 """The HTTP statuses after which another attempt may succeed."""
 TOKEN = "LUMEN_ALERT_TOKEN"

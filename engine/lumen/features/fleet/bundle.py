@@ -97,7 +97,7 @@ class BundleParts:
 def unpacked(data: bytes, wanted: str) -> dict[str, bytes]:
     """Return the files in a zip.
 
-    Raises BadBundleError if it is damaged, contains other than a project's files, or their hash is not `wanted`.
+    Raises BadBundleError if the zip is damaged, contains a foreign file, or the files' hash is not `wanted`.
     """
     try:
         files = bundles.unpacked(data, MAX_PROJECT_BYTES)

@@ -36,7 +36,7 @@ def as_started(files: Mapping[str, bytes], here: Mapping[str, bytes]) -> dict[st
 def at_home(shared: bytes, own: bytes) -> bytes:
     """Return a bundle's lumen.yaml, `shared`, with the keys about a house from the house's own lumen.yaml, `own`.
 
-    Raises UsageError if either file is not UTF-8, or has anything but a key at the left edge.
+    Raises UsageError if either file is not UTF-8, or has anything but keys and comments at the left edge.
     """
     of_house = {*HOUSE_KEYS, *(key.partition(".")[0] for key, row in table("sections").items() if row.of_house)}
     ours = {key: text for key, text in _blocks(own) if key in of_house}
@@ -80,7 +80,7 @@ class FileTrier(Protocol):
 class BundleTrial:
     """One robot's trial; call `tick` with the bundle to try.
 
-    `said` is the result, or empty before that; `wants` is the bundle's hash while the bundle must be fetched.
+    `said` is the result, empty until it is known; `wants` is the bundle's hash while the bundle must be fetched.
     """
 
     def __init__(self, trier: FileTrier, folder: BundleFolder, tell: Callable[[str], None]) -> None:

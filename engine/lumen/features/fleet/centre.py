@@ -127,7 +127,7 @@ class Centre:
             self._tell(line)
 
     def _send(self, house: str, hash: str, now: float) -> None:
-        """Send a house the bundle that a robot there lacks, unless it was sent within BUNDLE_PERIOD or is missing."""
+        """Send a house the bundle that a robot there lacks, unless it was sent recently or is unknown here."""
         if abs(now - self._sent.get((house, hash), -BUNDLE_PERIOD)) < BUNDLE_PERIOD:
             return
         files = self.bundles.files(hash)

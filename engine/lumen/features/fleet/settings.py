@@ -70,7 +70,7 @@ class RolloutPlan:
     abort_if: str = ""
     """The condition that rolls all robots back; empty for none."""
     try_first: bool = False
-    """True if all robots try the bundle before the first robot switches to it."""
+    """Whether all robots try the bundle before the first robot switches to it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,7 +80,7 @@ class Fleet:
     centre: str = ""
     """The address of the centre's broker."""
     key: str = ""
-    """The public key, in base64, by which robots verify bundles and orders; empty if missing."""
+    """The public key, in base64, with which robots verify bundles and orders; empty if missing."""
     houses: Mapping[str, FleetHouse] = field(default_factory=dict)
     groups: Mapping[str, FleetGroup] = field(default_factory=dict)
     measures: Mapping[str, FleetMeasure] = field(default_factory=dict)

@@ -135,9 +135,10 @@ class NaoqiLife:
         return {joint: angle + self.layer.offsets.get(joint, 0.0) for joint, angle in angles.items()}
 
     def tick(self, now: float, heat: Mapping[str, float], percentage: float) -> None:
-        """Send the eyes' colour and the joints' goals at `now` [s], unless a command runs or NAOqi is still busy.
+        """Send the eyes' colour and the joints' goals at `now` [s] if the robot is awake and no command moves it.
 
-        `heat` has the motors' temperatures by joint [degrees Celsius], `percentage` is the battery's charge [%].
+        Skip the goals while NAOqi is busy. `heat` has the motors' temperatures by joint [degrees Celsius], `percentage`
+        is the battery's charge [%].
         """
         free = frozenset(part for part in WHOLE_BODY if not self._owner(part))
         if not self._owner(VOICE):

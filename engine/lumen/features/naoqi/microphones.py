@@ -35,7 +35,7 @@ class Microphones:
         return CallSequence(self._listen(command), self._hush)
 
     def _listen(self, command: Record) -> CallSteps:
-        """Record sound, with which NAOqi calls `processRemote` of Lumen's service about six times a second.
+        """Record: NAOqi calls `processRemote` of Lumen's service with sound about six times a second.
 
         Discard sound from before the recording. Raises RobotFailedError if the sound does not arrive in time.
         """

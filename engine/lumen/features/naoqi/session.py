@@ -1,4 +1,4 @@
-"""The connection to NAOqi, with calls that return immediately, and calls that wait on a separate thread."""
+"""The connection to NAOqi, with calls that return immediately, and waiting calls for separate threads."""
 
 import re
 import threading
@@ -170,7 +170,7 @@ class NaoqiSession:
         return self._called(future)
 
     def serve(self, name: str, make: Callable[[Any], object]) -> NaoqiCall:
-        """Register the service that `make` builds with the package `qi`, only once per session unless that failed."""
+        """Register the service `name`, which `make` builds with the package `qi`, unless this session has it."""
         if not self.up:
             return NaoqiCall(error=CONNECTION_LOST)
         if name not in self._serving or self._serving[name].failed:

@@ -1,4 +1,4 @@
-"""The area in which the robot can walk, limited by its stage, based on odometry, and by obstacles."""
+"""Keeps the robot's walks on its stage, by odometry, and away from obstacles."""
 
 from collections.abc import Callable, Mapping, Sequence
 from math import cos, hypot, sin

@@ -77,7 +77,7 @@ class BrokerAddress:
             )
 
     def explain(self, error: BaseException) -> BusError:
-        """Return a BusError, with the remedy, for a failure to connect; return a BusError unchanged."""
+        """Return the BusError, with the remedy, for a failure to connect; if `error` is a BusError, return it."""
         if isinstance(error, BusError):
             return error
         found = filter(None, map(self._explained, _causes(error)))

@@ -20,7 +20,7 @@ MIN_RECONNECT_DELAY = 0.2
 MAX_RECONNECT_DELAY = 10.0
 """The longest wait before an attempt to reconnect [s]."""
 STABLE_TIME = 5.0
-"""The duration after which the loss of a connection resets the wait to MIN_RECONNECT_DELAY [s]."""
+"""The lifetime of a connection above which its loss resets the wait to MIN_RECONNECT_DELAY [s]."""
 
 _log = logging.getLogger(__name__)
 
@@ -81,7 +81,7 @@ class OutageLog:
             _log.warning("the broker at %s: %s", self._address, what)
 
     def back(self, connection: str) -> None:
-        """Record that a connection is back; after the last lost one, log that the broker is back."""
+        """Record that a connection is back; if no other connection is lost, log that the broker is back."""
         with self._changing:
             was = connection in self._away
             self._away.discard(connection)
@@ -95,7 +95,7 @@ class OutageLog:
 class BrokerConnection:
     """Connects, serves and reconnects; a subclass defines its work in `begin` and `serve`.
 
-    Callbacks of pika run only on the connection's own thread. `open` raises the first failure; later failures are
+    pika's callbacks run only on the connection's own thread. `open` raises the first failure; later failures are
     logged. The wait before reconnecting doubles each time, up to 10 s, and is shortened at random by up to half.
     """
 

@@ -129,7 +129,7 @@ class Consumer(BrokerConnection):
                 self._later(lambda s=subscription, r=old: self._move(s, r))  # type: ignore[misc]
 
     def remove(self, subscription: Subscription) -> None:
-        """Remove a subscription; its handler gets no further messages, and unused queues are removed."""
+        """Remove a subscription; its handler gets no further messages, and its queue is removed if unused."""
         if self._subscriptions.remove(subscription):
             self._later(lambda: self._drop(subscription))
 

@@ -20,7 +20,7 @@ from lumen.upkeep.drops import DropLog, ReasonLog
 from lumen.upkeep.threads import MessageGuard, WatchedThread
 
 FLUSH_MARK = "lumen.mark"
-"""The type of a mark: a message whose arrival shows that all earlier messages have arrived."""
+"""AMQP's `type` of a mark, a message whose arrival shows that all earlier messages have arrived."""
 MAX_REMEMBERED_IDS = 10_000
 """The maximum number of remembered ids, by which repetitions of messages that must arrive are recognised."""
 MAX_SHOWN = 40

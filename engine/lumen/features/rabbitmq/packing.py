@@ -1,6 +1,6 @@
 """Images and joints as bytes on a broker: the JPEG itself, or angles as floats; other fields become headers.
 
-Subscribers receive the body that the sender published, as with JSON.
+Subscribers receive a body of the same form as from JSON.
 """
 
 import binascii

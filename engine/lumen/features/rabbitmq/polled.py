@@ -24,7 +24,7 @@ from lumen.features.rabbitmq.poll_loop import PollLoop
 from lumen.features.rabbitmq.wire import MessageReader, WireConnection
 
 STALL_TIME = 0.5
-"""The delay of a turn, compared with its planned time, above which the process counts as suspended [s]."""
+"""The excess over a turn's planned time above which the process counts as suspended [s]."""
 
 
 class TurnClock:
@@ -147,7 +147,7 @@ class PolledConnection:
     def until(self, done: Callable[[], object]) -> None:
         """Run turns until `done` is true.
 
-        Raises TimeoutError after BROKER_TIMEOUT, and ConnectionBlockedTimeout while the broker accepts no messages.
+        Raises TimeoutError after BROKER_TIMEOUT, and ConnectionBlockedTimeout if the broker accepts no messages.
         """
         deadline = time.monotonic() + BROKER_TIMEOUT
         while not done():

@@ -54,7 +54,7 @@ class BrokerProbe:
         return True
 
     def reading(self, key: str) -> str:
-        """Return the broker's reason why this user can't receive messages under this key; empty if permitted."""
+        """Return the broker's reason if this user can't receive messages under this key; empty if permitted."""
         try:
             with self._asking() as channel:
                 queue = channel.queue_declare("", exclusive=True).method.queue
@@ -65,7 +65,7 @@ class BrokerProbe:
         return ""
 
     def writing(self, key: str) -> str:
-        """Return the broker's reason why this user can't send messages under this key; empty if permitted.
+        """Return the broker's reason if this user can't send messages under this key; empty if permitted.
 
         The test message contains a false user name. The broker refuses that name only after checking the permission to
         send, so the message reaches no receiver. Raises BusUnreachableError if the broker accepts the message.

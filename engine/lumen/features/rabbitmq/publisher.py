@@ -138,7 +138,7 @@ class Publisher(BrokerConnection):
         return self.join(timeout)
 
     def _send_now(self) -> None:
-        """Send waiting messages in the caller's thread, or in the connection's own thread if that is busy."""
+        """Send waiting messages in the caller's thread if possible, else in the connection's own thread."""
         connection = self.connection
         if connection and not connection.lend(self._send_as_guest):
             connection.wake()

@@ -23,7 +23,7 @@ MULTICAST_REACH = 8
 
 
 class DmxUniverse:
-    """Sends one universe, beginning with the first message: a start does not darken the hall.
+    """Sends one universe, but nothing before the first message, because a start must not darken the hall.
 
     A channel is 0 if it has no field, or its field has no value yet. A field missing from a body keeps its level.
     """

@@ -23,7 +23,7 @@ class Rollout:
     assigned: tuple[str, ...] = ()
     """The robots with the bundle; their number only grows."""
     watched: float = 0.0
-    """The time in this step while the centre ran and most of these robots ran the bundle, proved [s]."""
+    """The time in this step for which the centre ran and most assigned robots had proved the bundle [s]."""
     waited: float = 0.0
     """The time for which this step has been under way while the centre ran [s]."""
     state: str = GOING
@@ -36,11 +36,11 @@ class Rollout:
     prior: Mapping[str, str] = field(default_factory=dict)
     """Each assigned robot's proved bundle from before the rollout; robots without a proved bundle are left out."""
     tried: bool = False
-    """True if the trials before the first step have ended."""
+    """Whether the trials before the first step have ended."""
 
     @property
     def under_way(self) -> bool:
-        """True if the rollout is neither aborted nor finished."""
+        """Whether the rollout is neither aborted nor finished."""
         return self.state in UNDER_WAY
 
 
