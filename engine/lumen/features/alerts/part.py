@@ -30,7 +30,7 @@ from lumen.statechart import Step
 from lumen.upkeep.threads import WatchedThread
 
 TIME_TO_RISE = 60.0
-"""The time limit for getting up after a fall [s]; a robot that gets up by itself needs 20 s."""
+"""The time limit for getting up after a fall [s]; a robot that gets up by itself needs about 20 s."""
 
 
 class FallWatch:

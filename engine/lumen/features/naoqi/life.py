@@ -82,9 +82,9 @@ REST_AFTER = 0.5
 class NaoqiLife:
     """Adds the life layer's offsets to the joints' angles after the last command.
 
-    Legs stay still unless the style has `naoqi: [legs]`, because swaying has not been tested on a real robot. The robot
-    makes these movements from a command to wake or take a posture until a command to rest. `owner` returns the id of
-    the command that moves a body part; empty for none.
+    Legs stay still unless the style has `naoqi: [legs]`, because swaying has not been tested on a real robot. The
+    movements begin after a `Wake` or `Posture` command and end with a `Rest` command. `owner` returns the id of the
+    command that moves a body part; empty for none.
     """
 
     def __init__(self, session: NaoqiSession, owner: Callable[[str], str], body: Body) -> None:

@@ -22,9 +22,9 @@ SURE_SOUND = 0.5
 FULL = "BatteryFullChargedFlagChanged"
 
 BATTERY_LOW, BATTERY_RECOVERED = 20, 25
-"""The charges [%] at which `battery.low` is raised, and after which it can be raised again."""
+"""The charges [%] at or below which `battery.low` is raised, and from which it can be raised again."""
 MOTOR_HOT, MOTOR_COOLED = 75.0, 70.0
-"""The temperatures [degrees Celsius] at which `motors.hot` is raised, and after which it can be raised again."""
+"""The temperatures [degrees Celsius] from which `motors.hot` is raised, and up to which it can be raised again."""
 
 EVENT_SETTLE_TIME = 0.3
 """The time after an event from which a sensor's reading overrides that event [s]."""

@@ -28,7 +28,7 @@ def grounded(family: object) -> bool:
 
 
 class WalkMonitor:
-    """Checks for hazards during a walk, and stops the robot at the first; `reason` is that hazard, empty before."""
+    """Checks for hazards during a walk, and stops the robot at the first; `reason` describes it, else it is empty."""
 
     def __init__(self, post: PostCall, area: WalkingArea, here: GroundPose) -> None:
         self.reason = ""
@@ -107,7 +107,7 @@ class NaoqiWalks:
             raise RobotFailedError("the robot stopped before it arrived: something is in its way")
 
     def _arrived(self, here: GroundPose, way: tuple[float, float, float]) -> CallSteps:
-        """Return whether odometry shows the robot at its goal, because NAOqi 2.1's `moveTo` does not report this."""
+        """Return whether the robot is at its goal by odometry; NAOqi 2.1's `moveTo` does not report this."""
         there = yield self._post("ALMotion", "getRobotPosition", True)
         went, turned = hypot(there[0] - here[0], there[1] - here[1]), there[2] - here[2]
         return abs(went - hypot(*way[:2])) <= ARRIVAL_TOLERANCE and abs(turned - way[2]) <= HEADING_TOLERANCE

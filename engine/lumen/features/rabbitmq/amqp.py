@@ -26,7 +26,7 @@ from lumen.language.routes import Carried, Direction, Route
 from lumen.ports import Bus, Message, MessageHandler, Outgoing
 
 CLOSE_TIMEOUT = 5.0
-"""The time limit for closing the bus, while waiting messages are sent and received messages are handled [s]."""
+"""The time limit for closing the bus, including sending waiting messages and handling received messages [s]."""
 
 _log = logging.getLogger(__name__)
 

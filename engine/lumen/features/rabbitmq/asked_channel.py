@@ -18,7 +18,7 @@ class AskedConnection(Protocol):
 class AskedChannel:
     """Calls methods of pika's channel, waits for the broker's answer and returns it.
 
-    Raises ChannelClosedByBroker if the broker refuses, and the connection's errors in `until`.
+    Raises ChannelClosedByBroker if the broker refuses, and the errors of the connection's `until`.
     """
 
     def __init__(self, connection: AskedConnection, channel: Any) -> None:

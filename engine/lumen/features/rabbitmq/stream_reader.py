@@ -36,12 +36,12 @@ class StreamReader(BrokerConnection):
         return [self._read.popleft() for _ in range(len(self._read))]
 
     def close(self, timeout: float = 5.0) -> None:
-        """End within `timeout` [s]. Entries not taken yet are not lost: a new reader can begin at their offset."""
+        """Stop reading, and wait at most `timeout` [s]. A new reader can begin at the first entry not taken yet."""
         self.ending.set()
         self.join(timeout)
 
     def begin(self) -> None:
-        """Start to read at the offset after the last entry."""
+        """Start reading at the first unread offset."""
         self.channel.basic_qos(prefetch_count=PREFETCH)
         self.channel.add_on_cancel_callback(self._cancelled)
         self.connection.consume(self._stream, self._received, arguments={"x-stream-offset": self._next})

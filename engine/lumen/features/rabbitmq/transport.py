@@ -40,8 +40,8 @@ class Transport:
     def drops(self) -> tuple[DropLog, ...]:
         """The logs of dropped messages, one for each kind of loss.
 
-        In order: messages above the rate, failed because of a fault in Lumen, unusable, with a repeated id, too old or
-        too many to wait, and impossible to send.
+        In this order, they contain messages above the rate, messages not handled because of a fault in Lumen, unusable
+        messages, repeated ids, messages too old or too many to wait, and messages impossible to send.
         """
         sent = self.publisher.outbox.drops, self.publisher.unsendable
         heard = self.dispatcher.guard.drops, self.dispatcher.unusable.drops, self.dispatcher.repeated

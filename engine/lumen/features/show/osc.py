@@ -26,8 +26,8 @@ MAX_DATAGRAM = 65_535
 class OscDevice:
     """Sends routes of `link` to the device, and passes its messages on the routes `incoming` to `deliver`.
 
-    Messages from other senders are dropped and counted. An unknown device name, or a port in use, is reported, and the
-    attempt is repeated.
+    Messages from other senders are dropped and counted. If the device's name is unknown or the port is in use, that is
+    reported, and opening the socket is retried.
     """
 
     def __init__(
