@@ -2,8 +2,8 @@
 
 pika decodes all headers, including deep tables and invalid dates, and raises while it reads frames: a single message
 can end the connection. `read_properties` decodes only two headers: the text `cause`, if only texts come before it, and
-the message's offset in a stream. It leaves out texts that are not valid Unicode, and lists the names
-of those properties.
+the message's offset in a stream. It leaves out texts that are not valid Unicode, and lists the
+names of those properties.
 """
 
 from collections.abc import Callable, Mapping
