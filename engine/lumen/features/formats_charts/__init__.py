@@ -1,4 +1,4 @@
-"""Statecharts of other tools, and diagrams."""
+"""Import and export of other tools' statecharts, and diagrams of behaviours."""
 
 from lumen.feature import Exporter, Feature, Importer, Subcommand
 

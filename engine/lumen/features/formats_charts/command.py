@@ -1,4 +1,4 @@
-"""`lumen graph`: a behaviour as a picture, or as text for Mermaid or Graphviz."""
+"""`lumen graph`: draw a behaviour as a picture, or write it as text for Mermaid or Graphviz."""
 
 import argparse
 import shutil
@@ -19,7 +19,7 @@ from lumen.run.diagrams.diagram import Diagram
 PICTURES = (".svg", ".png")
 LAYOUTS = ("auto", "own", "dot")
 DRAWING = 60.0
-"""The longest time that Graphviz may take [s]."""
+"""The time limit for Graphviz [s]."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -47,7 +47,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Write or print the graph, and return 0.
 
-    Raises UsageError if there is no such behaviour or state, or if the graph can't be drawn or written as requested.
+    Raises UsageError if the behaviour or state does not exist, or if the graph can't be drawn or written as requested.
     """
     project = lumen.load(shown_project(options.project))
     name = options.behavior or project.behavior

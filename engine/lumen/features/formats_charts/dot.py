@@ -1,4 +1,4 @@
-"""A machine as a graph for Graphviz: states as boxes, regions as dashed clusters."""
+"""Writes a machine as a Graphviz graph, with states as boxes and regions as dashed clusters."""
 
 from collections.abc import Iterator
 
@@ -13,16 +13,16 @@ digraph {
 
 
 def dot(machine: MachineDefinition) -> str:
-    """Return the graph's text, ending with a newline; `dot -Tsvg` draws it.
+    """Return the graph in Graphviz's DOT language, ending with a newline.
 
-    A state with states inside is a cluster; an arrow to or from it ends at its frame. An invoked behaviour is a dashed
-    cluster inside its state the first time; further invocations are boxes with its name.
+    A state with inner states is a cluster, whose frame is the end of its arrows. An invoked behaviour is drawn once, as
+    a dashed cluster inside its state; further invocations are boxes with its name.
     """
     return "\n".join([_HEAD, *_DotDrawing(machine).lines(), "}"]) + "\n"
 
 
 class _DotDrawing:
-    """The lines of one graph; every state has an id `s1, s2, …` in document order."""
+    """Generates the lines for one machine; its states have the ids `s0`, `s1`, … in document order."""
 
     def __init__(self, machine: MachineDefinition, prefix: str = "", drawn: set[str] | None = None) -> None:
         self.machine = machine
@@ -30,7 +30,7 @@ class _DotDrawing:
         self.ids = {path: f"{prefix}s{number}" for number, path in enumerate(machine.states)}
 
     def lines(self, name: str = "") -> Iterator[str]:
-        """Yield the lines of a whole machine; `name` is the label of an invoked one, empty for the outermost."""
+        """Yield the machine's lines; `name` is the label of an invoked machine, empty for the outermost one."""
         yield from self._cluster(self.machine.root, 1, name)
         for state in self.machine.states.values():
             for transition in state.transitions:
@@ -54,7 +54,7 @@ class _DotDrawing:
         yield f"{indent}}}"
 
     def _inside(self, invoke: Invoke, id: str, depth: int) -> Iterator[str]:
-        """Yield an invoked behaviour, with its arrows."""
+        """Yield the lines for an invoked behaviour: a cluster, or only a box if it is unknown or already drawn."""
         indent, machine = "  " * depth, self.machine.invoked.get(invoke.behavior)
         if machine is None or invoke.behavior in self.drawn:
             yield f"{indent}{id} [label={_quoted(invocation(invoke))}, style=dashed]"
@@ -76,7 +76,10 @@ class _DotDrawing:
             yield self._arrow(transition.source, target, f"label={_quoted(caption(transition))}{style}")
 
     def _arrow(self, source: str, target: str, look: str, *, begins: bool = False) -> str:
-        """Return an arrow; its ends are cut at the frames of clusters that do not contain the other end."""
+        """Return an arrow. It ends at the frame of each cluster that does not contain its other end.
+
+        An arrow that `begins` (to an initial state) is not shortened.
+        """
         looks = [look] if look else []
         for end, path, other in (("ltail", source, target), ("lhead", target, source)):
             holds = other == path or not path or other.startswith(f"{path}.")

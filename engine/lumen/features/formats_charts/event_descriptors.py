@@ -1,8 +1,8 @@
-"""Descriptors of events, `a.b`, `a.*` and `*`: which are equal, and which can match the same event."""
+"""Normalizes and compares event descriptors: `a.b`, `a.*` and `*`."""
 
 
 def normal(descriptor: str) -> str:
-    """Return `a` for `a`, `a.` and `a.*` (SCXML 3.12.1)."""
+    """Return a descriptor's normal form: `a` for `a`, `a.` and `a.*` (SCXML 3.12.1); `*` stays `*`."""
     return "*" if descriptor == "*" else descriptor.removesuffix("*").rstrip(".") if "." in descriptor else descriptor
 
 

@@ -1,6 +1,4 @@
-"""Rows of `hears` in charts of other tools: they become conditions with a name of Lumen's, since no other tool has
-them.
-"""
+"""Converts rows of `hears`, which other tools lack, to conditions that only Lumen understands."""
 
 from collections.abc import Sequence
 
@@ -9,14 +7,14 @@ from lumen.language.machines import Hears, Transition
 from lumen.talk.hearing import ENTRY
 
 LOST_ELSEWHERE = "implement this guard in the other tool: the longest match, negation, questions and captured values"
-"""The hint of a finding about a row of `hears`: what is lost."""
+"""The hint for a converted row of `hears`, with the features that other tools lose."""
 HEARD_TEXT = "event.data.result"
 
 
 def in_asked_order(transitions: Sequence[Transition]) -> Sequence[Transition]:
-    """Return the transitions in the order of their evaluation.
+    """Return the transitions in evaluation order.
 
-    Rows of `hears` come after `on`, and before a transition on any event (`*`).
+    Rows of `hears` follow the other transitions, and precede those on any event (`*`).
     """
     if not any(t.hears for t in transitions):
         return transitions
@@ -24,15 +22,18 @@ def in_asked_order(transitions: Sequence[Transition]) -> Sequence[Transition]:
 
 
 def key_of(row: Hears) -> str:
-    """Return the key of a row, as in a behaviour file; empty if its phrases come from an entry of a `for`.
+    """Return a row's key in the behaviour file, or empty if its phrases come from a `for` entry.
 
-    A chart has no `for`, so a key with its variable would have no meaning.
+    A chart has no `for`, so a key with the loop variable would be meaningless.
     """
     return "" if any(name.startswith(ENTRY) for name in row.names) else row.title.removeprefix("hears ")
 
 
 def as_guard(transition: Transition) -> Expression | None:
-    """Return a row and its own guard as one guard; None for `not`, `asked` and `else`, which expressions lack."""
+    """Return a row's phrases and its own guard as one guard.
+
+    Return None without a row, and for `not`, `asked` and `else`, which expressions lack.
+    """
     row, guard = transition.hears, transition.guard
     if row is None or row.way:
         return None

@@ -1,4 +1,4 @@
-"""A machine as a diagram for Mermaid 11: `stateDiagram-v2`, states nested, regions side by side."""
+"""Writes a machine as a `stateDiagram-v2` for Mermaid 11, with nested states and regions side by side."""
 
 import re
 from collections.abc import Iterator
@@ -12,15 +12,15 @@ _SPECIAL = re.compile(r"[^\w .,!?()=+*/&|\'\[\]…-]|--+|\b_+")
 def mermaid(machine: MachineDefinition) -> str:
     """Return the diagram's text, ending with a newline.
 
-    Every state gets an id `s1, s2, …` in document order and its key as its label, since Mermaid accepts few characters
-    in an id. Events without a target are listed in the label of their state. An invoked behaviour is drawn inside its
-    state, as a region of its own, the first time; further invocations are boxes with its name.
+    Mermaid accepts few characters in an id, so states have the ids `s0`, `s1`, … in document order and their keys as
+    labels. The label of a state without children also lists its transitions without a target. An invoked behaviour is
+    drawn once, as a separate region inside its state; further invocations are boxes with its name.
     """
     return "\n".join(["stateDiagram-v2", *_MermaidDrawing(machine).lines()]) + "\n"
 
 
 class _MermaidDrawing:
-    """The lines of one diagram. An arrow is drawn in the innermost compound state that contains both its ends."""
+    """Generates the lines for one machine, with each arrow in the innermost compound state that contains both ends."""
 
     def __init__(self, machine: MachineDefinition, prefix: str = "", drawn: set[str] | None = None) -> None:
         self.machine, self.prefix = machine, prefix
@@ -78,13 +78,13 @@ class _MermaidDrawing:
             yield f"{indent}[*] --> {self.ids[path]}"
         if state.path or not self.framed:
             yield from (f"{indent}{arrow}" for arrow in self.arrows.get(state.path, ()))
-        for number, invoke in enumerate(state.invoke):  # after the arrows: those belong to the region before
+        for number, invoke in enumerate(state.invoke):  # after the arrows, which belong to the region before
             if number or state.children:
                 yield f"{indent}--"
             yield from self._inside(invoke, f"{self.ids[state.path]}i{number}", depth)
 
     def _inside(self, invoke: Invoke, id: str, depth: int) -> Iterator[str]:
-        """Yield the lines for an invoked behaviour: a box of its own, or only its name if unknown or already drawn."""
+        """Yield the lines for an invoked behaviour, with only its name if it is unknown or already drawn."""
         indent, machine = "  " * depth, self.machine.invoked.get(invoke.behavior)
         name = _escaped(invocation(invoke))
         if machine is None or invoke.behavior in self.drawn:
@@ -105,11 +105,11 @@ def _label(state: State) -> str:
 
 
 def _caption(transition: Transition) -> str:
-    """Return the label of an arrow: ` : event [guard]`, empty without both."""
+    """Return an arrow's label, ` : event [guard]`, or empty without an event and a guard."""
     text = caption(transition)
     return f" : {_escaped(text)}" if text else ""
 
 
 def _escaped(text: str) -> str:
-    """Return the text with all of Mermaid's special characters as entities (`#58;` for a colon)."""
+    """Return the text with Mermaid's special characters as entities, such as `#58;` for a colon."""
     return _SPECIAL.sub(lambda found: "".join(f"#{ord(c)};" for c in found[0]), text)

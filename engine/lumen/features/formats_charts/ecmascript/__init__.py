@@ -1,7 +1,7 @@
 """Translates conditions and values of statecharts between ECMAScript and Lumen's expressions.
 
-Both are read into the tree of `lumen.expressions`, with the rest of ECMAScript as operators (`===`, `typeof`) and as
-calls of methods (`.trim`, with the object as the first argument).
+Both languages are parsed into trees of `lumen.expressions`. ECMAScript's methods become function calls, such as `.trim`
+with the object as the first argument, and its additional operators, such as `===` and `typeof`, stay operators.
 """
 
 from lumen.features.formats_charts.ecmascript.reader import ScriptNames, ScriptTranslator, read_condition, read_value

@@ -1,4 +1,4 @@
-"""Literal values in an expression."""
+"""Evaluates ECMAScript's literals."""
 
 from typing import Any
 
@@ -7,7 +7,10 @@ from lumen.expressions.tree import ExpressionNode, Identifier, ListLiteral, Lite
 
 
 def constant(tree: ExpressionNode, otherwise: Any) -> Any:
-    """Return the JSON value of a literal ECMAScript tree, `otherwise` if it must be computed."""
+    """Return the JSON value of a tree of ECMAScript literals, or `otherwise` if any part must be computed.
+
+    `undefined` becomes None, and an integer outside Lumen's range a float.
+    """
     match tree:
         case Literal(value=int() as value) if not isinstance(value, bool) and not MIN_INT <= value <= MAX_INT:
             return float(value)

@@ -1,4 +1,4 @@
-"""ECMAScript's equality in Lumen's language: of values, of missing ones, and of possibly missing ones."""
+"""Translates ECMAScript's tests for equality, including those of values that are or may be missing."""
 
 from lumen.expressions.kinds import LIST, MAP, NULL
 from lumen.expressions.tree import (
@@ -17,15 +17,15 @@ from lumen.features.formats_charts.ecmascript.script_parser import ScriptError
 from lumen.features.formats_charts.ecmascript.translation import Translation
 
 EVENT, HAPPENED = Identifier("_event"), FunctionCall("has", (FieldAccess(Identifier("event"), "name"),))
-"""The event as a whole, and the test that there is one: at first `_event` is undefined (SCXML 5.10.1)."""
+"""The event as a whole, and the test that it exists: `_event` is undefined before the first event (SCXML 5.10.1)."""
 
 _UNDEFINED = Identifier("undefined")
 
 
 def equality(translation: Translation, node: Binary) -> ExpressionNode:
-    """Return a comparison by `==`, `!=`, `===` or `!==` in Lumen's language.
+    """Translate a comparison by `==`, `!=`, `===` or `!==`.
 
-    Raises ScriptError if it has no counterpart.
+    Raises ScriptError if it has no counterpart in Lumen.
     """
     positive, strict = node.sign in ("==", "==="), len(node.sign) == 3
     found = _undefined(translation, node, strict) or _index(translation, node) or _equal(translation, node, strict)
@@ -36,7 +36,7 @@ def _undefined(translation: Translation, node: Binary, strict: bool) -> Expressi
     """Translate a test that a value is missing; return None for any other comparison.
 
     Such tests are `typeof x === 'undefined'`, `x === undefined` and `x == null`. Raises ScriptError if `typeof` is
-    compared with another text.
+    compared with anything but 'undefined'.
     """
     for one, other in ((node.left, node.right), (node.right, node.left)):
         kind_asked = isinstance(one, Unary) and one.sign == "typeof"
@@ -62,7 +62,7 @@ def _absent(translation: Translation, tree: ExpressionNode, or_null: bool) -> Ex
 
 
 def _index(translation: Translation, node: Binary) -> ExpressionNode | None:
-    """Translate `text.indexOf(part) == -1`: the text does not contain the part. None for any other comparison."""
+    """Translate `text.indexOf(part) == -1` to `!contains(text, part)`; return None for any other comparison."""
     match node:
         case Binary(left=FunctionCall(function=".indexOf", arguments=(text, part)), right=Literal(value=-1)):
             return Unary("!", FunctionCall("contains", (translation.value(text), translation.value(part))))
@@ -82,7 +82,7 @@ def _equal(translation: Translation, node: Binary, strict: bool) -> ExpressionNo
 
 
 def guarded(translation: Translation, node: ExpressionNode, *operands: ExpressionNode) -> ExpressionNode:
-    """Return the comparison, false if a field of the event is missing (undefined in ECMAScript)."""
+    """Return the comparison, guarded to be false if an operand is a missing event field (undefined in ECMAScript)."""
     paths = {path: operand for operand in operands if is_data(path := path_of(operand))}
     missing = [FunctionCall("has", (operand,)) for path, operand in paths.items() if path not in translation.present]
     return Logic("&&", (*missing, node)) if missing else node

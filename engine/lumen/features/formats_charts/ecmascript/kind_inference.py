@@ -1,4 +1,4 @@
-"""Infers the kind of a value from its expression, and which fields of an event are present."""
+"""Infers from an expression its value's kind, and which event fields are present."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -20,7 +20,7 @@ from lumen.expressions.tree import (
 
 
 def negated(node: ExpressionNode) -> ExpressionNode:
-    """Return the negation, without a needless `!`."""
+    """Return the negated expression, without `!` if a simpler form exists."""
     match node:
         case Unary(sign="!", operand=operand):
             return operand
@@ -34,12 +34,12 @@ def negated(node: ExpressionNode) -> ExpressionNode:
 
 
 def is_data(path: tuple[str, ...] | None) -> bool:
-    """Return whether a path leads to a field of the event's data."""
+    """Return whether a path names a field in the event's data; False for None."""
     return path is not None and path[:2] == ("event", "data") and len(path) > 2
 
 
 def known(node: ExpressionNode, holds: bool) -> frozenset[tuple[str, ...]]:
-    """Return the fields that are certainly present if the node holds, or, with `holds` False, if it does not."""
+    """Return the paths of the fields that must be present if the node's value is `holds`."""
     match node:
         case FunctionCall(function="has", arguments=(target,)) if holds:
             path = path_of(target)
@@ -55,7 +55,7 @@ UNKNOWN_KIND = ""
 
 
 def kind(node: ExpressionNode, context: Mapping[str, str]) -> str:
-    """Return one of the kinds of Lumen's values, or UNKNOWN_KIND; `context` has those of keys with a constant kind."""
+    """Return the kind of a Lumen expression's value, or UNKNOWN_KIND; `context` has the keys whose kind is constant."""
     match node:
         case Literal(value=value):
             return kind_of(value)
@@ -88,7 +88,7 @@ def kind(node: ExpressionNode, context: Mapping[str, str]) -> str:
 
 
 def is_float(node: ExpressionNode) -> bool:
-    """Return whether a number is certainly a float, so that `/` keeps the fraction."""
+    """Return whether an expression is certainly a float: then `/` keeps the fraction."""
     match node:
         case Literal(value=value):
             return isinstance(value, float)
@@ -100,5 +100,8 @@ def is_float(node: ExpressionNode) -> bool:
 
 
 def kinds_of(context: Mapping[str, Any], types: Mapping[str, Any]) -> dict[str, str]:
-    """Return the constant kinds of context keys: those of their first values, unless `types` declares a wider one."""
+    """Return the constant kinds of context keys, taken from their first values.
+
+    Keys whose first value is None or whose type is in `types` are left out.
+    """
     return {key: kind_of(value) for key, value in context.items() if value is not None and key not in types}

@@ -1,4 +1,4 @@
-"""ECMAScript's methods and functions, and their counterparts in Lumen."""
+"""Translates ECMAScript's method calls to Lumen's functions and operators."""
 
 import re
 
@@ -17,7 +17,10 @@ from lumen.features.formats_charts.ecmascript.script_parser import ScriptError
 from lumen.features.formats_charts.ecmascript.translation import Translation
 
 SIGN_FUNCTIONS = {"contained": "in", "same": "=="}
-"""Functions that the writer calls for an operator whose form in ECMAScript depends on an unknown kind of value."""
+"""Functions that the writer calls for operators without a form in ECMAScript.
+
+They are `in` for values of an unknown kind, and `==` for lists and maps, which ECMAScript compares by identity.
+"""
 
 LUMEN_FUNCTIONS = frozenset(
     (
@@ -38,14 +41,14 @@ LUMEN_FUNCTIONS = frozenset(
         *SIGN_FUNCTIONS,
     )
 )
-"""Functions that only Lumen has, by their own names."""
+"""Functions that only Lumen has; they have the same names in exported ECMAScript."""
 
 EQUIVALENT_METHODS = {".toLowerCase": "lower", ".trim": "trim", ".replaceAll": "replace"}
 _COUNTS = {".toLowerCase": 0, ".trim": 0, ".replaceAll": 2, ".includes": 1, ".startsWith": 1, ".endsWith": 1}
 
 
 def method(translation: Translation, node: FunctionCall) -> ExpressionNode:
-    """Return the call of a method in Lumen's language. Raises ScriptError if there is no counterpart."""
+    """Translate a method call. Raises ScriptError if it has no counterpart in Lumen."""
     name, (owner, *arguments) = node.function, node.arguments
     if owner == Identifier("Math"):
         return _mathematics(translation, name, arguments)

@@ -1,4 +1,4 @@
-"""Translates ECMAScript's tree to Lumen's with the same meaning; ScriptError means that there is no counterpart."""
+"""Translates ECMAScript's trees to Lumen's. ScriptError means that an expression has no counterpart."""
 
 import re
 from collections.abc import Mapping
@@ -33,36 +33,36 @@ _FALSY = ListLiteral((Literal(None), Literal(False), Literal(0), Literal("")))
 
 @dataclass(frozen=True)
 class ScriptNames:
-    """The meaning of the names in a document."""
+    """The meaning of a document's names."""
 
     context: Mapping[str, str] = field(default_factory=dict)
-    """The context keys, by the data model's names."""
+    """The context keys, by their names in the data model."""
     kinds: Mapping[str, str] = field(default_factory=dict)
-    """The constant kinds of context keys; a missing key may have any kind."""
+    """The constant kinds of context keys; a key that is not listed can have any kind."""
     states: Mapping[str, str] = field(default_factory=dict)
-    """Lumen's states, by the ids for `In()`."""
+    """Lumen's names of states, by the ids used in `In()`."""
     events: Mapping[str, str] = field(default_factory=dict)
-    """Lumen's names of events, by the document's names, if they differ."""
+    """Lumen's names of events, by the document's; events with the same name in both are left out."""
     title: str = ""
     """The value of `_name`."""
 
 
 def read_condition(source: str, names: ScriptNames) -> str:
-    """Return Lumen's expression that is true if ECMAScript's is truthy. Raises ScriptError if it has no counterpart."""
+    """Return a Lumen expression that is true if the source is truthy. Raises ScriptError if Lumen can't express it."""
     return printed(ScriptTranslator(names).condition(parse_script(source)))
 
 
 def read_value(source: str, names: ScriptNames) -> ExpressionNode:
-    """Return the tree of Lumen's expression with the same value. Raises ScriptError if it has no counterpart."""
+    """Return a Lumen tree with the same value as the source. Raises ScriptError if Lumen can't express it."""
     tree = ScriptTranslator(names).value(parse_script(source))
     printed(tree)
     return tree
 
 
 def printed(tree: ExpressionNode) -> str:
-    """Return the text of one of Lumen's trees.
+    """Return the text of a Lumen tree.
 
-    Raises ScriptError if it is longer or deeper than an expression may be.
+    Raises ScriptError if the tree or its text exceeds the limit for expressions.
     """
     if any(level > MAX_TREE_DEPTH for _, level in walk(tree)):
         raise ScriptError("it is nested too deeply")
@@ -73,20 +73,20 @@ def printed(tree: ExpressionNode) -> str:
 
 
 class ScriptTranslator:
-    """Translates one expression; `present` are the fields of the event known to be present so far."""
+    """Translates one expression; `present` holds the event fields known to be present at the current operand."""
 
     def __init__(self, names: ScriptNames) -> None:
         self.names = names
         self.present: frozenset[tuple[str, ...]] = frozenset()
 
     def kind(self, node: ExpressionNode) -> str:
-        """Return the kind of one of Lumen's trees, or UNKNOWN_KIND."""
+        """Return the kind of a Lumen tree's value, or UNKNOWN_KIND."""
         return kind(node, self.names.kinds)
 
     def condition(self, tree: ExpressionNode) -> ExpressionNode:
-        """Return a Lumen tree that is true if the value of an ECMAScript tree is truthy.
+        """Return a Lumen tree that is true if an ECMAScript tree's value is truthy.
 
-        Raises ScriptError if there is no such tree.
+        Raises ScriptError if Lumen can't express it.
         """
         match tree:
             case Logic(sign=sign, operands=operands):
@@ -122,7 +122,7 @@ class ScriptTranslator:
         return guarded(self, Unary("!", Binary("in", node, _FALSY)), node)
 
     def value(self, tree: ExpressionNode) -> ExpressionNode:
-        """Return a Lumen tree with the same value as an ECMAScript tree. Raises ScriptError if there is none."""
+        """Return a Lumen tree with an ECMAScript tree's value. Raises ScriptError if Lumen can't express it."""
         match tree:
             case Literal(value=int() as value) if not isinstance(value, bool) and not MIN_INT <= value <= MAX_INT:
                 return Literal(float(value))
@@ -213,7 +213,7 @@ class ScriptTranslator:
         return Binary(sign, left, right)
 
     def _renamed(self, node: Binary) -> Binary:
-        """Translate a comparison with the name of an event, using Lumen's name for it."""
+        """Replace an event name that is compared with `_event.name` by Lumen's; return other comparisons unchanged."""
         name = FieldAccess(EVENT, "name")
         match node.left, node.right:
             case left, Literal(value=str() as event) if left == name:
@@ -240,7 +240,7 @@ class ScriptTranslator:
         return FunctionCall(node.function, arguments)
 
     def _in(self, node: FunctionCall) -> ExpressionNode:
-        """Translate `In('id')`; and `In(id)`, as in the data model `null` (SCXML B.1.2)."""
+        """Translate `In('id')`, and `In(id)` from the data model `null` (SCXML B.1.2); an unknown literal is false."""
         states = self.names.states
         match node.arguments:
             case (Literal(value=str() as state),):
@@ -255,7 +255,7 @@ class ScriptTranslator:
 
 
 def _floats(left: ExpressionNode, right: ExpressionNode) -> tuple[ExpressionNode, ExpressionNode]:
-    """Return the operands of `/`, one of them as a float, so that Lumen's division keeps the fraction."""
+    """Return the operands of `/` with one as a float: Lumen's division of integers drops the fraction."""
     match left, right:
         case _, Literal(value=int() as value):
             return left, Literal(float(value))

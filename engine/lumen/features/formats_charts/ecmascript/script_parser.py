@@ -1,4 +1,4 @@
-"""Parses the text of an ECMAScript expression into its tokens and its tree."""
+"""Tokenizes and parses ECMAScript expressions."""
 
 import re
 from collections.abc import Collection
@@ -24,13 +24,13 @@ _SIMPLE = {"n": "\n", "t": "\t", "r": "\r", "b": "\b", "f": "\f", "v": "\v", "0"
 
 
 class ScriptError(Exception):
-    """An expression that Lumen's language can't represent; the message is the reason."""
+    """An expression is invalid or can't be translated; the message is the reason."""
 
 
 def tokenize_script(source: str) -> list[Token]:
-    """Return the tokens of an expression, of the kinds number, text, name and sign, and a final `end`.
+    """Return an expression's tokens, whose kinds are `number`, `text`, `name` and `sign`, and a final `end`.
 
-    Raises ScriptError if it is too long or can't be read.
+    Raises ScriptError if the source is too long or contains an invalid token.
     """
     if len(source) > MAX_EXPRESSION_LENGTH:
         raise ScriptError(f"it is longer than {MAX_EXPRESSION_LENGTH:,} characters")
@@ -87,12 +87,12 @@ _RESERVED = frozenset((
 
 
 def parse_script(source: str) -> ExpressionNode:
-    """Return the tree of an expression. Raises ScriptError if it is invalid, or uses what Lumen's language lacks."""
+    """Return an expression's tree. Raises ScriptError if it is invalid or uses syntax that Lumen does not support."""
     return _ScriptParser(tokenize_script(source)).bounded()
 
 
 def is_reserved(name: str) -> bool:
-    """Return whether a name has a meaning in ECMAScript or SCXML."""
+    """Return whether a name is reserved in ECMAScript or SCXML."""
     return name in _FOREIGN or name in CONSTANTS or name in _RESERVED
 
 
@@ -113,7 +113,7 @@ class _ScriptParser(PrattParser):
         return ScriptError("it is nested too deeply")
 
     def minus(self, power: int) -> ExpressionNode:
-        """Return `-operand`; a negated number is a number."""
+        """Return `-operand`, as a literal if the operand is a number."""
         negative = self.unary(power)
         operand = negative.operand
         if not isinstance(operand, Literal) or isinstance(operand.value, bool | str | None):

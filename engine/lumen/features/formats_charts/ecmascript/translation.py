@@ -1,4 +1,4 @@
-"""The interface that the parts of a translation need: the translation of subexpressions and names."""
+"""The interface through which helper modules translate subexpressions."""
 
 from typing import Protocol
 
@@ -6,12 +6,13 @@ from lumen.expressions.tree import ExpressionNode
 
 
 class Translation(Protocol):
-    """The translation of one ECMAScript expression; `present` are the fields of the event known to be present."""
+    """Translates one ECMAScript expression."""
 
     present: frozenset[tuple[str, ...]]
+    """The paths of the event fields known to be present."""
 
     def value(self, tree: ExpressionNode) -> ExpressionNode:
-        """Return Lumen's tree with the same value. Raises ScriptError if it has no counterpart."""
+        """Return a Lumen tree with the same value as `tree`. Raises ScriptError if Lumen can't express it."""
 
     def kind(self, node: ExpressionNode) -> str:
-        """Return the kind of one of Lumen's trees, or UNKNOWN_KIND."""
+        """Return the kind of a Lumen tree's value, or UNKNOWN_KIND."""

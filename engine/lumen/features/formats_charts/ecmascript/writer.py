@@ -39,20 +39,20 @@ class WrittenScript(NamedTuple):
 
 
 class Vocabulary(NamedTuple):
-    """The meaning of Lumen's names in a document."""
+    """The document's names for Lumen's context keys and states, and the kinds of keys."""
 
     kinds: Mapping[str, str] = {}
     """The constant kinds of context keys."""
     keys: Mapping[str, str] = {}
-    """The names of context keys in the document, if they differ."""
+    """The document's names of context keys, by Lumen's; a key that is not listed keeps its name in expressions."""
     states: Mapping[str, str] = {}
-    """The ids of states in the document, by Lumen's names."""
+    """The document's ids of states, by Lumen's paths."""
 
 
 def write_expression(source: str, vocabulary: Vocabulary) -> WrittenScript:
-    """Return one of Lumen's expressions in ECMAScript.
+    """Translate a Lumen expression to ECMAScript.
 
-    Raises ScriptError if it uses the context or the event as a whole.
+    Raises ScriptError if the expression uses the context or the event as a whole.
     """
     writer = _ScriptWriter(vocabulary)
     text = unparse(writer.node(parse_expression(as_written(source))))
@@ -153,7 +153,7 @@ class _ScriptWriter:
         return self._own(node.function, *arguments)
 
     def _typeof(self, sign: str, target: ExpressionNode) -> ExpressionNode:
-        """Translate the test that a value is present; that of the event's name tests whether there is an event."""
+        """Translate a test that a value is present or, with `===`, missing; for `event.name`, `_event` is tested."""
         asked = Identifier("_event") if path_of(target) == ("event", "name") else self.node(target)
         return Binary(sign, Unary("typeof", asked), Literal("undefined"))
 

@@ -1,4 +1,4 @@
-"""Reads executable content of SCXML (section 4) as Lumen's actions."""
+"""Reads SCXML's executable content (section 4) as Lumen's actions."""
 
 import re
 from collections.abc import Iterable, Iterator
@@ -22,9 +22,9 @@ _STATEMENT = re.compile(
 
 
 def assignments(source: str) -> list[tuple[str, str]] | None:
-    """Return the names and values of `x = 1; y += x; z++`, in order.
+    """Return the names and values that a script such as `x = 1; y += x; z++` assigns, in order.
 
-    Return None if the script contains quotes or does anything else.
+    Return None if it contains quotes or anything except assignments.
     """
     text = re.sub(r"//[^\n]*|/\*.*?\*/", "", source, flags=re.DOTALL)
     if "'" in text or '"' in text:
@@ -49,7 +49,7 @@ _WAY = re.compile(r"[A-Za-z_]\w*(\.[A-Za-z_]\w*)*", re.ASCII)
 
 
 class LeftOutError(Exception):
-    """An element has no counterpart in Lumen; the message and the hint are for its author."""
+    """An element has no counterpart in Lumen; the message and the hint are for the document's author."""
 
     def __init__(self, message: str, hint: str = "") -> None:
         super().__init__(message)
@@ -63,11 +63,11 @@ class ScxmlActionReader:
         self.context, self.findings = context, findings
 
     def block(self, elements: Iterable[XmlElement]) -> list[ActionData]:
-        """Return the actions of these elements; report and leave out those without a counterpart in Lumen."""
+        """Return the elements' actions; report and leave out elements without a counterpart in Lumen."""
         return [action for element in elements for action in self.actions(element)]
 
     def actions(self, element: XmlElement) -> Iterator[ActionData]:
-        """Yield the actions of an element; report it if it has no counterpart in Lumen."""
+        """Yield an element's actions; report the element if it has no counterpart in Lumen."""
         try:
             yield from self._actions(element)
         except LeftOutError as error:
@@ -76,7 +76,7 @@ class ScxmlActionReader:
             self.findings.lost(element.place, f"`<{element.tag}>`: {error}")
 
     def condition(self, source: str) -> str:
-        """Return Lumen's guard for a condition in ECMAScript. Raises ScriptError if it has no counterpart."""
+        """Translate an ECMAScript condition to a guard. Raises ScriptError if Lumen can't express it."""
         return read_condition(source, self.context.names)
 
     def _actions(self, element: XmlElement) -> Iterator[ActionData]:
@@ -126,7 +126,11 @@ class ScxmlActionReader:
         return {"assign": {".".join((self.context.keys[id], *within)): value}}
 
     def _script(self, element: XmlElement) -> Iterator[ActionData]:
-        """Yield the assignments of a script. Raises LeftOutError if it does anything else."""
+        """Yield a script's assignments.
+
+        Raises LeftOutError if it is in another file, does anything else, or assigns to an undeclared name, and
+        ScriptError if Lumen can't express a value.
+        """
         found = assignments(element.text) if "src" not in element.attributes else None
         keys = self.context.keys
         if found is None or any(name not in keys for name, _ in found):
@@ -134,9 +138,9 @@ class ScxmlActionReader:
         yield from ({"assign": {keys[name]: self.value(source)}} for name, source in found)
 
     def value(self, source: str) -> Any:
-        """Return the value of an ECMAScript expression: a literal as itself, anything else as Lumen's expression.
+        """Return an ECMAScript literal as its value, and any other expression in Lumen's language.
 
-        Raises ScriptError if it has no counterpart.
+        Raises ScriptError if Lumen can't express it.
         """
         read = constant(parse_script(source), _NOT_CONSTANT)
         if read is not _NOT_CONSTANT:
@@ -195,7 +199,11 @@ class ScxmlActionReader:
         return length
 
     def _constant(self, element: XmlElement, name: str, computed: str, *, optional: bool = False) -> str:
-        """Return the text of an attribute, or of its expression. Raises LeftOutError if that must be computed."""
+        """Return the attribute `name`, or the literal in the attribute `computed`, as text.
+
+        Raises LeftOutError if the value must be computed or is missing and not optional, and ScriptError if it is not
+        valid ECMAScript.
+        """
         if computed in element.attributes:
             source = element.get(computed)
             read = constant(parse_script(source), _NOT_CONSTANT)
@@ -210,9 +218,9 @@ class ScxmlActionReader:
         return element.get(name)
 
     def data(self, element: XmlElement) -> Any:
-        """Return the data of a `<send>` or `<donedata>`: names, parameters, or content; None without any.
+        """Return the data that an element sends, from its names, parameters or content; None without any.
 
-        Raises LeftOutError or ScriptError if it can't be converted.
+        Raises LeftOutError or ScriptError if the data can't be converted.
         """
         found: dict[str, Any] = {}
         for name in element.get("namelist").split():
@@ -230,7 +238,7 @@ class ScxmlActionReader:
 
 
 def own(element: XmlElement) -> Any:
-    """Return the JSON in an element of Lumen's own namespace. Raises LeftOutError if it is invalid."""
+    """Return the parsed JSON of an element in Lumen's namespace. Raises LeftOutError if it is invalid."""
     try:
         return foreign_json(element.text)
     except (ValueError, RecursionError):

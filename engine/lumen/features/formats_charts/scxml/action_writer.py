@@ -36,11 +36,14 @@ class ScxmlActionWriter:
         self.vocabulary, self.report = vocabulary, report
 
     def block(self, steps: Sequence[PlacedAction]) -> list[XmlTag]:
-        """Return the elements of these actions; those that ECMAScript can't express are reported and left out."""
+        """Return the actions as elements; report and leave out those that ECMAScript can't express."""
         return [tag for step in steps for tag in self._one(step)]
 
     def expression(self, expression: Expression) -> str:
-        """Return an expression in ECMAScript. Raises ScriptError if it can't be expressed."""
+        """Translate an expression to ECMAScript, and report the names in it that only Lumen has.
+
+        Raises ScriptError if ECMAScript can't express it.
+        """
         written = write_expression(expression.source, self.vocabulary)
         self._foreign(written.foreign, expression.where)
         return written.text
@@ -103,16 +106,17 @@ class ScxmlActionWriter:
                 yield from self.block(choice.otherwise)
 
     def data(self, value: ComputedValue) -> list[XmlTag]:
-        """Return the elements of an event's data: a `<param>` for each entry of a map, else one `<content>`.
+        """Return an event's data as elements: a `<param>` for each entry of a map, else one `<content>`.
 
-        Raises ScriptError if it can't be expressed.
+        An empty map, or one with an empty key, also becomes `<content>`. Raises ScriptError if ECMAScript can't express
+        a value.
         """
         if isinstance(value, Mapping) and value and all(value):
             return [XmlTag("param", {"name": key, "expr": self.value(item)}) for key, item in value.items()]
         return [XmlTag("content", {"expr": self.value(value)})]
 
     def value(self, value: ComputedValue) -> str:
-        """Return a value as ECMAScript. Raises ScriptError if it can't be expressed."""
+        """Return a value in ECMAScript. Raises ScriptError if ECMAScript can't express it."""
         match value:
             case Expression():
                 return self.expression(value)
@@ -123,7 +127,7 @@ class ScxmlActionWriter:
         return unparse(Literal(plain_value(value)))
 
     def literal(self, value: Any) -> str:
-        """Return a JSON value as ECMAScript."""
+        """Return a JSON value as an ECMAScript literal."""
         match value:
             case list() | tuple():
                 return f"[{', '.join(map(self.literal, value))}]"
@@ -134,5 +138,5 @@ class ScxmlActionWriter:
 
 
 def is_constant(source: str) -> bool:
-    """Return whether one of Lumen's expressions is a literal, which can't fail."""
+    """Return whether a Lumen expression is a literal, whose evaluation can't fail."""
     return isinstance(parse_expression(source), Literal)

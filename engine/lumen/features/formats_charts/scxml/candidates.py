@@ -20,11 +20,11 @@ from lumen.project.formats.behavior_data import TransitionData, single
 
 
 def arrange(rows: list[tuple[str, TransitionData]], leave_out: Callable[[TransitionData], None]) -> dict[str, Any]:
-    """Return `on` for these candidates, tried in this order; a single candidate is written without a list.
+    """Return `on` for the rows, which are candidates in this order; a descriptor's only candidate is not in a list.
 
-    If the same descriptor comes before and after one that an event may match as well, all of these become candidates of
-    the most general one, with guards for the event's name. One whose guard becomes too long is passed to `leave_out`
-    instead.
+    If a descriptor comes both before and after another that matches some of the same events, the candidates of both
+    move to the most general descriptor, with guards on the event's name. A row whose guard becomes too long is passed
+    to `leave_out` instead.
     """
     heads = _heads({descriptor for descriptor, _ in rows})
     order, mixed = _DescriptorOrder(), set[str]()
@@ -44,33 +44,33 @@ def arrange(rows: list[tuple[str, TransitionData]], leave_out: Callable[[Transit
 
 
 def _heads(descriptors: set[str]) -> dict[str, str]:
-    """Return for each descriptor the most general one that shares events with it."""
+    """Map each descriptor to the most general one that matches all of its events, possibly itself."""
     return {d: next((general for general in _prefixes(d) if general in descriptors), d) for d in descriptors}
 
 
 class _DescriptorOrder:
-    """The position of each descriptor, and that of the last more specific one."""
+    """The positions of the descriptors so far, and of the last more specific descriptor after each."""
 
     def __init__(self) -> None:
         self.place: dict[str, int] = {}
         self.below: dict[str, int] = {}
 
     def add(self, descriptor: str) -> None:
-        """Append a descriptor, unless it has a position already."""
+        """Append a descriptor, unless it already has a position."""
         if descriptor not in self.place:
             place = self.place[descriptor] = len(self.place)
             for general in _prefixes(descriptor):
                 self.below[general] = place
 
     def passed(self, descriptor: str) -> bool:
-        """Return whether a descriptor that matches some of its events comes after it."""
+        """Return whether another descriptor that matches some of the same events comes after this one."""
         place = self.place.get(descriptor, len(self.place))
         later = [self.place.get(general, -1) for general in _prefixes(descriptor)]
         return max([self.below.get(descriptor, -1), *later]) > place
 
 
 def _prefixes(descriptor: str) -> list[str]:
-    """Return all more general descriptors: `*`, `a` and `a.b` for `a.b.c`."""
+    """Return all more general descriptors, such as `*`, `a` and `a.b` for `a.b.c`; none for `*`."""
     if descriptor == "*":
         return []
     words = descriptor.split(".")
@@ -78,7 +78,10 @@ def _prefixes(descriptor: str) -> list[str]:
 
 
 def _narrowed(name: str, general: str, row: TransitionData) -> TransitionData | None:
-    """Return the row as a candidate of the general descriptor, None if its guard would be too long."""
+    """Return the row as a candidate of `general`, with a guard on the event's name if that differs.
+
+    Return None if the guard would be too long or too deep.
+    """
     if name == general:
         return row
     event = FieldAccess(Identifier("event"), "name")

@@ -1,4 +1,4 @@
-"""Converts the data model of an SCXML document to Lumen's context."""
+"""Converts an SCXML document's data model to Lumen's context."""
 
 import re
 from collections.abc import Iterator
@@ -19,22 +19,22 @@ _UNFIT = re.compile(r"\W+", re.ASCII)
 _NOTHING = object()
 
 MAX_KIND_PASSES = 10
-"""The most passes over the kinds; after that, all assigned keys may have any kind."""
+"""The most passes over the assignments; in the last one, all assigned keys are allowed any kind."""
 
 
 class ScxmlDataModel:
-    """The context of a document: `first` has the values of its keys, `late` those that must be computed, in order.
-
-    `names` are the names in expressions. A key that receives values of several kinds is in `wide`, and `types` in the
-    file allows it any value.
-    """
+    """A document's context, converted from all of its `<data>`."""
 
     def __init__(self, outline: ScxmlStateTree, findings: ConversionFindings) -> None:
         self.findings = findings
         self.first: dict[str, Any] = {}
+        """The first values of all keys; None if a value is lost or must be computed."""
         self.late: dict[str, str] = {}
+        """The expressions for first values that must be computed, in document order."""
         self.wide: dict[str, dict[str, Any]] = {}
+        """Keys that receive values of several kinds: `types` in the behaviour file allows them any value."""
         self.keys: dict[str, str] = {}
+        """Lumen's keys, by the ids of `<data>`."""
         self.taken: set[str] = set()
         elements = [element for element in _data(outline.top, outline.scxml) if self._declare(element)]
         states = {outline.title: outline.title} | {id: node.name or outline.title for id, node in outline.by_id.items()}
@@ -46,7 +46,7 @@ class ScxmlDataModel:
         self._widen(outline)
 
     def _declare(self, element: XmlElement) -> bool:
-        """Give the id of a `<data>` a key; report it and return False if an earlier one has that id."""
+        """Assign a key to a `<data>`. Report it and return False if an earlier `<data>` has the same id."""
         id = element.get("id")
         if id in self.keys:
             hint = "give each its own id: data is visible in the whole chart"
@@ -99,7 +99,7 @@ class ScxmlDataModel:
             )
 
     def _widen(self, outline: ScxmlStateTree) -> None:
-        """Find the keys that receive values of a kind other than their first value's."""
+        """Move the keys that are assigned a value of another kind than the first from `kinds` to `wide`."""
         assigned = [e for e in outline.scxml.walk() if e.tag == "assign" and e.get("location") in self.keys]
         for turn in range(MAX_KIND_PASSES):
             before = len(self.wide)
@@ -127,7 +127,7 @@ class ScxmlDataModel:
 def written(text: str) -> Any:
     """Return the value of inline content (SCXML B.2.8.1); None if it is blank.
 
-    It is JSON, a list or text in ECMAScript's form, or else the text itself.
+    The content is JSON, a list or object in ECMAScript's form, or else text, in which whitespace is collapsed.
     """
     stripped = text.strip()
     if not stripped:
@@ -153,7 +153,7 @@ def _top_data(scxml: XmlElement) -> Iterator[XmlElement]:
 
 
 def _data(top: XmlElement, scxml: XmlElement) -> Iterator[XmlElement]:
-    """Yield all `<data>`, the document's first."""
+    """Yield every `<data>` with an id: the document's, then those of its states."""
     yield from _top_data(scxml)
     for state in scxml.walk():
         if state is not scxml and state.tag in STATES:

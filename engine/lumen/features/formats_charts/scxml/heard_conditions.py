@@ -1,4 +1,4 @@
-"""The condition that a row of `hears` becomes in SCXML: `hears(_event.data.result, 'not dance') && (its guard)`."""
+"""Converts rows of `hears` to SCXML's conditions, `hears(_event.data.result, 'not dance') && (guard)`, and back."""
 
 from lumen.expressions import unparse
 from lumen.expressions.tree import Literal
@@ -9,12 +9,12 @@ _AND, _END = " && (", ")"
 
 
 def row_condition(key: str, guard: str) -> str:
-    """Return the condition of the row with that key; `guard` is the row's own in ECMAScript, empty without one."""
+    """Return the condition for a row with this key; `guard` is the row's own guard in ECMAScript, or empty."""
     return _asked(key) + (f"{_AND}{guard}{_END}" if guard else "")
 
 
 def guard_in(key: str, condition: str) -> str:
-    """Return the row's own guard in a condition of `row_condition`, empty for none. Raises ScriptError for others."""
+    """Return the row's own guard from a `row_condition`, or empty. Raises ScriptError for any other condition."""
     asked = _asked(key)
     if condition == asked:
         return ""

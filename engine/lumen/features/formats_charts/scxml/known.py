@@ -1,4 +1,4 @@
-"""The parts of SCXML that the importer knows: W3C's recommendation of 2015, and older forms that files still have."""
+"""The SCXML that the importer recognizes: W3C's recommendation of 2015, and older forms that are still in use."""
 
 from collections.abc import Mapping
 
@@ -65,7 +65,7 @@ ATTRIBUTES: FormatTable = {
     "lumen:state": Known(),
     "lumen:action": Known(),
 }  # fmt: skip
-"""The attributes that each element may have."""
+"""The attributes of each element: those that are read, lost or meaningless."""
 
 _ACTION_NAMES = frozenset(("raise", "send", "cancel", "log", "assign", "if", "script", "lumen:action"))
 _OTHER_ACTIONS = {
@@ -110,10 +110,10 @@ ELEMENTS: FormatTable = {
     "if": Known(_ACTION_NAMES | {"elseif", "else"}, _OTHER_ACTIONS),
     "send": Known(_PARAMETERS),
 }  # fmt: skip
-"""The elements that each element may contain; those that are not listed contain none, or any XML."""
+"""The child elements of each element; an element that is not listed contains none, or any XML (`OPEN`)."""
 
 OPEN = frozenset(("data", "assign", "content"))
-"""Elements that may contain any XML, which is not part of the chart."""
+"""Elements that can contain any XML, which is not part of the chart."""
 
 ACTION_HOLDERS = frozenset(tag for tag, known in ELEMENTS.items() if "raise" in known.read)
 """Elements whose children are executable content."""
@@ -124,7 +124,7 @@ MEANINGLESS_ELEMENTS = {
     "graphics": "the layout in an editor", "position": "the layout in an editor",
     "metadata": "notes for readers", "documentation": "notes for readers", "description": "notes for readers",
 }  # fmt: skip
-"""Elements of other namespaces that are never actions."""
+"""Elements of other namespaces that are never actions, with their purpose."""
 
 VALUES: Mapping[tuple[str, str], tuple[str, ...]] = {
     ("scxml", "binding"): ("early", "late"),
@@ -136,13 +136,13 @@ VALUES: Mapping[tuple[str, str], tuple[str, ...]] = {
     ("final", "lumen:end"): ("true",),
     ("transition", "lumen:end"): ("true",),
 }
-"""The values of attributes with a fixed set of values."""
+"""The allowed values of attributes that have a fixed set."""
 
 SINGLE = frozenset(
     (("state", "initial"), ("initial", "transition"), ("history", "transition"), ("final", "donedata"),
      ("donedata", "content"), ("send", "content"), ("invoke", "content"))
 )  # fmt: skip
-"""Elements of which a parent has at most one; the same applies to each `lumen:` element."""
+"""Children that a parent can have only once, like every `lumen:` element except `lumen:action`."""
 
 TEXT = "text"
 ALTERNATIVES: Mapping[str, tuple[tuple[str, ...], ...]] = {
@@ -160,13 +160,13 @@ ALTERNATIVES: Mapping[str, tuple[tuple[str, ...], ...]] = {
     "cancel": (("sendid", "sendidexpr"),),
     "invoke": (("type", "typeexpr"), ("src", "srcexpr", "<content>"), ("id", "idlocation")),
 }  # fmt: skip
-"""Alternatives: of each group, an element has one at most, by the recommendation."""
+"""Groups of alternatives; the recommendation allows an element at most one from each group."""
 
 REQUIRED: Mapping[str, str] = {"data": "id", "param": "name"}
 
 
 def _place(tag: str) -> Known:
-    """Return the attributes of an element, and in angle brackets the elements in it."""
+    """Return an element's attributes and, in angle brackets, its child elements."""
     own, within = ATTRIBUTES.get(tag, Known()), ELEMENTS.get(tag, Known())
     return Known(
         own.read | {f"<{name}>" for name in within.read},
@@ -183,5 +183,5 @@ KNOWN: FormatTable = {
 
 
 def plain(name: str) -> str:
-    """Return a name with Lumen's namespace as `lumen:`; other names keep their namespace, in braces."""
+    """Return a name with Lumen's namespace written as `lumen:`; any other name is unchanged."""
     return name.replace(f"{{{LUMEN_NAMESPACE}}}", "lumen:", 1)

@@ -1,4 +1,4 @@
-"""Converts `<log>` to Lumen's texts with `{{ … }}`, and back."""
+"""Converts `<log>` to Lumen's templates with `{{ … }}`, and back."""
 
 import re
 
@@ -19,7 +19,7 @@ from lumen.project.formats.xml_elements import XmlElement
 
 
 def template_of(element: XmlElement, names: ScriptNames) -> str:
-    """Return the text of a `<log>`: its label, and its expression with texts joined to values.
+    """Return a `<log>` as a template: its label, then its expression, split at each `+` that joins text.
 
     Raises ScriptError if the expression has no counterpart.
     """
@@ -29,14 +29,14 @@ def template_of(element: XmlElement, names: ScriptNames) -> str:
 
 
 def plain_template(element: XmlElement, text: str) -> str:
-    """Return the label of a `<log>` and a text, as a template without expressions."""
+    """Return a `<log>`'s label and a text as a template without computed values."""
     label = element.get("label")
     between = ": " if label and element.get("expr") else ""
     return _piece(Literal(label + between + text))
 
 
 def _parts(tree: ExpressionNode, names: ScriptNames) -> list[ExpressionNode]:
-    """Return the operands of a `+` chain that joins text; for any other expression, the expression as the only part."""
+    """Translate the operands of a `+` chain that joins text, or any other expression as the only part."""
     chain: list[ExpressionNode] = []
     rest = tree
     while isinstance(rest, Binary) and rest.sign == "+":
@@ -55,9 +55,9 @@ def _piece(node: ExpressionNode) -> str:
 
 
 def expression_of(text: str, vocabulary: Vocabulary) -> tuple[str, tuple[str, ...]]:
-    """Return the ECMAScript of Lumen's text, and the names in it that only Lumen has.
+    """Translate a template to an ECMAScript expression; also return the names in it that only Lumen has.
 
-    Raises ScriptError if it can't be expressed.
+    Raises ScriptError if ECMAScript can't express a value.
     """
     parts = split_template(text)
     if not any(isinstance(part, Placeholder) for part in parts):

@@ -25,7 +25,7 @@ _ID = re.compile(r"[^\s@*]+")
 
 
 def invocation(element: XmlElement, contents: ScxmlActionReader) -> dict[str, Any]:
-    """Return an invocation of the behaviour named like the file, with its id and input.
+    """Convert an `<invoke>` to a row of `invoke`, for the behaviour with the file's name.
 
     Raises LeftOutError or ScriptError if it can't be converted.
     """
@@ -53,9 +53,8 @@ def invocation(element: XmlElement, contents: ScxmlActionReader) -> dict[str, An
 def read_scxml(file: str, content: bytes, title: str) -> tuple[dict[str, Any], list[Diagnostic]]:
     """Return the data of a behaviour file, and findings about lost and changed parts.
 
-    Raises ForeignFileError if the file is not an SCXML document with states.
-
-    `title` is the behaviour's name if the document has none.
+    `title` is the behaviour's name if the document has none. Raises ForeignFileError if the file is not an SCXML
+    document with states.
     """
     root = parse_xml(file, content, SCXML_NAMESPACE)
     if root.tag != "scxml":
@@ -68,7 +67,7 @@ def read_scxml(file: str, content: bytes, title: str) -> tuple[dict[str, Any], l
 
 
 class _ScxmlReader:
-    """Reads one document, its states from the outermost to the innermost."""
+    """Reads one document, from the outermost state to the innermost."""
 
     def __init__(self, scxml: XmlElement, title: str) -> None:
         self.scxml = scxml
@@ -80,9 +79,9 @@ class _ScxmlReader:
         self.transitions = ScxmlTransitionReader(self.outline, self.contents, self.findings)
         self.passed: dict[ForeignState, dict[str, Any]] = {}
         self.given = {element.get("id") for element in scxml.walk() if element.tag == "invoke"}
-        """The ids that the file gives to invocations."""
+        """The invocation ids in the file."""
         self.invoked: dict[str, _ActiveTogether] = {}
-        """The states of the invocations so far, by the id of the invocation."""
+        """The states with the invocations read so far, by invocation id."""
 
     def data(self) -> tuple[dict[str, Any], list[Diagnostic]]:
         root = self.outline.root
@@ -140,25 +139,26 @@ class _ScxmlReader:
         return data if "target" in data else data | self._remembered(node)
 
     def _remembered(self, node: ForeignState) -> dict[str, Any]:
-        """Return the target of a history without one (which SCXML does not allow).
+        """Return the `target` of a history without a valid one, which SCXML does not allow.
 
-        It is the states in which the parent begins.
+        It is the parent's first regular child, or all of them in a parallel state.
         """
         home = node.parent
         found = regular(home)[: None if home.source.tag == "parallel" else 1] if home else []
         return {"target": self.transitions.named(node, found)} if found else {}
 
     def _plain_way(self, transition: XmlElement) -> None:
-        """Report the attributes that the transition of an `<initial>` or a `<history>` can't have."""
+        """Report attributes that a transition in an `<initial>` or `<history>` can't have."""
         for name in ("event", "cond", "type"):
             if name in transition.attributes:
                 message = f"`{name}` is left out: a transition into a state has no event or condition"
                 self.findings.lost(transition.attribute_place(name), message, "delete it")
 
     def _default(self, node: ForeignState, transition: XmlElement, key: str) -> dict[str, Any]:
-        """Return `initial` or a history's `target`, with the transition's actions.
+        """Return the transition's targets under `key`: `initial`, or `target` for a history.
 
-        If the target is invalid, the result is empty and the reason is reported.
+        Actions move to an additional state; in a parallel state, they are reported and left out. The result is empty
+        if the targets are missing or invalid, and invalid ones are reported.
         """
         home = node if key == "initial" else node.parent
         found = self.transitions.targets(transition)
@@ -185,7 +185,7 @@ class _ScxmlReader:
     def _pass_through(
         self, home: ForeignState, transition: XmlElement, targets: list[ForeignState], actions: list[ActionData]
     ) -> str:
-        """Add a state to `home` that runs these actions and leads to its targets at once; return its key."""
+        """Add a state to `home` that runs the actions and immediately enters the targets; return its key."""
         passed = self.passed.setdefault(home, {})
         key = passing_key(home, passed)
         hint = "the behaviour passes through it immediately"
@@ -231,7 +231,7 @@ class _ScxmlReader:
         return data | self._ours(node)
 
     def _ours(self, node: ForeignState) -> dict[str, Any]:
-        """Return the data in `<lumen:state>`, which only Lumen writes; report keys without a counterpart."""
+        """Return the data in `<lumen:state>`, which only Lumen writes; report invalid entries."""
         data: dict[str, Any] = {}
         ours = self._own(node.source, "state", {})
         for key, value in ours.items() if isinstance(ours, dict) else (("", ours),):
@@ -245,7 +245,7 @@ class _ScxmlReader:
         return data
 
     def _invokes(self, node: ForeignState) -> list[dict[str, Any]]:
-        """Return the charts in other files that a state invokes; report its other invocations."""
+        """Convert a state's invocations of charts in other files; report and leave out all others."""
         rows = []
         for element in node.source.of("invoke"):
             try:
@@ -268,9 +268,9 @@ class _ScxmlReader:
         return rows
 
     def _named_apart(self, node: ForeignState, element: XmlElement, row: dict[str, Any]) -> dict[str, Any]:
-        """Return the row with an id that no invocation has at the same time.
+        """Return the row with an id that is unique among invocations active at the same time.
 
-        Raises LeftOutError if the file repeats an id.
+        Raises LeftOutError if the file itself repeats an id among them.
         """
         id = row.get("id", row["behavior"])
 
@@ -293,9 +293,9 @@ class _ScxmlReader:
                 self.findings.changed(block.place, f"several `<{block.tag}>` become one list", hint)
 
     def _afters(self, node: ForeignState) -> dict[str, Any]:
-        """Return the blocks by which Lumen wrote an `after`.
+        """Return the blocks that Lumen wrote for `after`, under `onentry` and `onexit`.
 
-        They are the `onentry` and `onexit` blocks and, as `events`, the delays by event.
+        `events` maps the event of each timer to its delay.
         """
         found: dict[str, Any] = {"onentry": [], "onexit": [], "events": {}}
         name = node.name or self.outline.title
@@ -326,15 +326,16 @@ class _ScxmlReader:
 
 
 class _ActiveTogether:
-    """A set of states; `meets` returns whether another one can be active together with one of them.
+    """A set of states; `meets` returns whether a given state can be active together with any of them.
 
-    Two states can if one is in the other, or if they are in different regions of a parallel state.
+    Two states can be active together if one contains the other, or if they are in different regions of a parallel
+    state.
     """
 
     def __init__(self) -> None:
         self._states: set[ForeignState] = set()
         self._around: dict[ForeignState, set[ForeignState]] = {}
-        """The states that contain these, each with those of its children that contain them."""
+        """The ancestors of the states, each with its children that are or contain one of the states."""
 
     def add(self, state: ForeignState) -> None:
         self._states.add(state)
@@ -356,7 +357,7 @@ class _ActiveTogether:
 def _with_entry(data: dict[str, Any], late: list[ActionData]) -> dict[str, Any]:
     """Return the data with `late` as the first actions of `entry`.
 
-    These values must be computed before anything else.
+    The values of `late` must be computed before all other actions.
     """
     entry = [*late, *data.pop("entry", [])]
     return {**{k: v for k, v in data.items() if k != "states"}, "entry": entry, "states": data["states"]}

@@ -1,4 +1,4 @@
-"""The states of an SCXML document before their content is read: their keys and paths in Lumen's tree."""
+"""The states of an SCXML document, with Lumen's keys and paths, before their content is read."""
 
 from lumen.features.formats_charts.foreign_states import MAX_STATE_LEVELS, ForeignState, clean_id, free_id, free_key
 from lumen.features.formats_charts.scxml.namespaces import LUMEN_NAMESPACE
@@ -9,14 +9,14 @@ STATES = ("state", "parallel", "final", "history")
 
 
 def regular(node: ForeignState) -> list[ForeignState]:
-    """Return the children that can be active."""
+    """Return the children that can be active, which are all except histories."""
     return [child for child in node.children if child.source.tag != "history"]
 
 
 class ScxmlStateTree:
-    """The tree of states under `root` (whose element, `top`, becomes the file), and all of them by id.
+    """The tree of states under `root`, and all states by id.
 
-    `title` is the behaviour's name.
+    `top` is the root's element, which becomes the behaviour file; `title` is the behaviour's name.
     """
 
     def __init__(self, scxml: XmlElement, title: str, findings: ConversionFindings) -> None:
@@ -35,10 +35,13 @@ class ScxmlStateTree:
         self.events = {
             f"done.state.{id}": f"done.state.{node.name}" for id, node in self.by_id.items() if id != node.name != ""
         }
-        """The end events of states whose ids differ in Lumen."""
+        """Lumen's end events, by the document's, for states whose names differ in Lumen."""
 
     def _top(self) -> XmlElement:
-        """Return the document itself, or the one state that Lumen wrapped its root in."""
+        """Return the `<scxml>`, or the state as which Lumen wrote the root.
+
+        Such a state loses its elements that only end the document.
+        """
         states = [state for state in self.scxml.of(*STATES) if not _ends_document(state)]
         if len(states) != 1 or states[0].get(f"{{{LUMEN_NAMESPACE}}}root") != "true":
             return self.scxml

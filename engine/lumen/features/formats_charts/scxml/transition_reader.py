@@ -1,4 +1,4 @@
-"""Reads transitions of SCXML as `on`, `always`, `after`, `onDone` and `onError`."""
+"""Reads SCXML's transitions as `on`, `hears`, `always`, `after`, `onDone` and `onError`."""
 
 import re
 from collections.abc import Iterator
@@ -30,7 +30,10 @@ class ScxmlTransitionReader:
         self.outline, self.contents, self.findings = outline, contents, findings
 
     def of(self, node: ForeignState, afters: dict[str, str]) -> dict[str, Any]:
-        """Return the transitions of a state, by `on`, `always`, `after` and the like."""
+        """Return a state's transitions, by `on`, `hears`, `always`, `after`, `onDone` and `onError`.
+
+        `afters` maps the events of Lumen's timers to their delays.
+        """
         always: list[TransitionData] = []
         after: dict[str, list[TransitionData]] = {}
         rows: list[tuple[str, TransitionData]] = []
@@ -88,7 +91,7 @@ class ScxmlTransitionReader:
     def _done(
         self, node: ForeignState, rows: list[tuple[str, TransitionData]]
     ) -> tuple[dict[str, Any], list[tuple[str, TransitionData]]]:
-        """Return `onDone` and `onError` if the candidates can have no other meaning, and the remaining candidates."""
+        """Return `onDone` and `onError`, if they can only mean the same as `rows`, and the remaining rows."""
         name = node.name or self.outline.title
         kind = "do" if not regular(node) else "state"
         has_do = bool(list(node.source.of(f"{{{LUMEN_NAMESPACE}}}do")))
@@ -107,7 +110,10 @@ class ScxmlTransitionReader:
 
     @cached_property
     def _dones(self) -> set[str]:
-        """Return the names of all states with children, whose end is an event, and their prefixes up to each dot."""
+        """The prefixes, up to each dot, of the names of states with children.
+
+        `done.state.a` also matches the event at the end of a state `a.b`.
+        """
         names = (node.name.split(".") for node in self.outline.root.walk() if node.children)
         return {".".join(words[:n]) for words in names for n in range(1, len(words))}
 
@@ -137,7 +143,7 @@ class ScxmlTransitionReader:
         return row
 
     def targets(self, element: XmlElement) -> list[ForeignState] | None:
-        """Return the states of `target`; None (and report it) if one is missing or they can't be active together."""
+        """Return the states in `target`. Report and return None if one is missing or they can't be active together."""
         found = []
         for id in element.get("target").split():
             node = self.outline.by_id.get(id)
@@ -152,13 +158,13 @@ class ScxmlTransitionReader:
         return found
 
     def named(self, source: ForeignState, targets: list[ForeignState], *, inside: bool = False) -> Any:
-        """Return the name by which a state refers to its target; a list for several targets."""
+        """Return the source's reference to its target, or a list of references to several targets."""
         names = [source.calls(target, self.outline.title, inside=inside) for target in targets]
         return names[0] if len(names) == 1 else names
 
 
 def _heard(element: XmlElement) -> str:
-    """Return the key of the row of `hears` that a transition was written from; empty for none."""
+    """Return the key of the `hears` row from which Lumen wrote a transition; empty for any other transition."""
     return element.get(f"{{{LUMEN_NAMESPACE}}}hears") if element.get("event") == HEARD else ""
 
 

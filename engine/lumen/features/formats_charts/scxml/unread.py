@@ -1,4 +1,4 @@
-"""Report and remove what the reader does not read, so that nothing of a document is lost silently."""
+"""Reports and removes the parts of a document that the reader ignores: nothing is lost silently."""
 
 from lumen.features.formats_charts.scxml.known import (
     ACTION_HOLDERS,
@@ -27,8 +27,8 @@ _SCHEMA_LOCATION = "{http://www.w3.org/2001/XMLSchema-instance}schemaLocation"
 class UnreadParts:
     """Prepares one document for the reader.
 
-    Parts that are in no table are removed from the tree, and values that differ only in case are corrected. Elements of
-    editors are reported in one line per name.
+    Elements that can't be read are removed from the tree, and attribute values that differ only in case are corrected.
+    Elements of editors are reported once per name.
     """
 
     def __init__(self, scxml: XmlElement, findings: ConversionFindings) -> None:
@@ -40,7 +40,7 @@ class UnreadParts:
             for child in element.children
             if _is_foreign(child.tag)
         }
-        """Foreign elements that occur in places without actions: they are never actions."""
+        """Foreign elements that also occur outside executable content, so they are never actions."""
         self.notes: dict[str, list[XmlElement]] = {}
         self._element(scxml)
         self._data_model(scxml)
@@ -95,7 +95,7 @@ class UnreadParts:
         element.attributes = found
 
     def _is_read(self, element: XmlElement, child: XmlElement) -> bool:
-        """Return whether the reader gets a child; report it if not."""
+        """Return whether a child can be read; otherwise report it, or note an editor's element for later."""
         shown, name = plain(element.tag), plain(child.tag)
         if _is_foreign(child.tag):
             local = child.tag.rpartition("}")[2]
@@ -161,7 +161,7 @@ def _is_foreign(name: str) -> bool:
 
 
 def _lost(known: Known, shown: str, name: str, hint: str) -> tuple[str, str]:
-    """Return the message and the hint: a known loss gives its reason, any other may be a mistake."""
+    """Return the message and the hint. For a known loss, the hint is the reason and becomes part of the message."""
     if name in known.lost:
         return f"{shown}: {hint}", ""
     return f"{shown} has no counterpart in Lumen", hint

@@ -23,9 +23,9 @@ _TAGS = {StateKind.PARALLEL: "parallel", StateKind.FINAL: "final", StateKind.HIS
 
 
 def write_scxml(machine: MachineDefinition, place: PlaceOfPath) -> tuple[str, list[Diagnostic]]:
-    """Return the document, and findings about what is missing in it or has a meaning only for Lumen.
+    """Return the document, and findings about parts that are missing from it or that only Lumen understands.
 
-    Robot verbs, `do`, phrases and answers, which SCXML lacks, are in a separate namespace: Lumen reads them back
+    Robot verbs, `do`, phrases and answers, which SCXML lacks, are in a separate namespace. Lumen reads them back
     without loss, and other tools ignore them.
     """
     report = ExportReport(place)
@@ -75,7 +75,7 @@ class _ScxmlWriter:
         return XmlTag("data", {"id": self.vocabulary.keys[key], "expr": self.orders.literal(value)})
 
     def _own(self) -> Iterator[XmlTag]:
-        """Yield Lumen's own element for the parts of a whole machine that SCXML lacks, if it has any."""
+        """Yield `lumen:machine` with the machine's parts that SCXML lacks, if it has any."""
         machine = self.machine
         phrases = {name: plain_phrases(table, anyhow=name in machine.anyhow) for name, table in machine.phrases.items()}
         answers = {
@@ -94,7 +94,7 @@ class _ScxmlWriter:
             yield _json("machine", found)
 
     def _below(self, state: State) -> Iterator[str]:
-        """Yield all children in document order, including history states."""
+        """Return an iterator over the paths of all children in document order, including histories."""
         return (path for path, child in self.machine.states.items() if child.parent == state.path and path)
 
     def _ids(self, paths: Sequence[str]) -> str:
@@ -153,7 +153,7 @@ class _ScxmlWriter:
                 yield XmlTag(tag, {}, block)
 
     def _invokes(self, state: State) -> Iterator[XmlTag]:
-        """Yield the invoked behaviours, by the names of their exported files."""
+        """Yield an `<invoke>` of the exported file for each invoked behaviour; report inputs that can't be expressed."""
         for invoke in state.invoke:
             file = f"{invoke.behavior}.scxml"
             try:
@@ -171,9 +171,9 @@ class _ScxmlWriter:
             )
 
     def _event(self, state: State, event: str) -> str:
-        """Return the name of an event.
+        """Return an event's name in the document.
 
-        An event of the state's own (`after`, `onDone`) ends with the state's id in the document.
+        The state's own events (`after`, `onDone`) end with its id in the document.
         """
         return event.removesuffix(state.name) + self.ids[state.path] if event.endswith(f".{state.name}") else event
 
@@ -207,9 +207,9 @@ class _ScxmlWriter:
             yield XmlTag("transition", attributes, self.orders.block(transition.actions))
 
     def _heard(self, transition: Transition, row: Hears) -> dict[str, str]:
-        """Return the attributes of a row of `hears`: its condition is one that only Lumen understands.
+        """Return the attributes for a row of `hears`, whose condition only Lumen understands.
 
-        Raises ScriptError if there is no such condition.
+        Raises ScriptError if the row can't be expressed as a condition.
         """
         if key := key_of(row):
             guard = self.orders.expression(transition.guard) if transition.guard else ""
@@ -222,7 +222,7 @@ class _ScxmlWriter:
         return {"cond": self.orders.expression(condition)}
 
     def _wrapped(self, state: XmlTag) -> Iterator[XmlTag]:
-        """Yield the root as a state of the document, and a final state if the document can end with it."""
+        """Yield the root as a state of the document, and a final state if the root can end."""
         root, id, mark = self.machine.root, self.ids[""], {"lumen:end": "true"}
         yield state
         if root.kind is StateKind.PARALLEL or any(
@@ -248,7 +248,7 @@ class _ScxmlWriter:
 
 
 def _free(key: str, others: Container[str]) -> str:
-    """Return a name for a context key that ECMAScript allows."""
+    """Return a context key's name in ECMAScript: `_` is appended until it is neither reserved nor another key."""
     name = key
     while is_reserved(name) or (name != key and name in others):
         name += "_"

@@ -11,7 +11,7 @@ _QUOTES = {'"': "&quot;", "\n": "&#10;", "\t": "&#9;", "\r": "&#13;"}
 
 @dataclass
 class XmlTag:
-    """An element to be written; empty attributes are left out."""
+    """An element to write; attributes with empty values are left out, and so is the text beside children."""
 
     name: str
     attributes: Mapping[str, str] = field(default_factory=dict)
@@ -19,7 +19,7 @@ class XmlTag:
     text: str = ""
 
     def lines(self, depth: int = 0) -> Iterator[str]:
-        """Yield the lines of the element, indented by its depth."""
+        """Yield the element's lines, indented by two spaces per level of `depth`."""
         indent = "  " * depth
         pairs = ((key, escape(_sound(value), _QUOTES)) for key, value in self.attributes.items() if value)
         start = " ".join([self.name, *(f'{key}="{value}"' for key, value in pairs)])
@@ -35,5 +35,5 @@ class XmlTag:
 
 
 def _sound(text: str) -> str:
-    """Return the text without characters that XML does not allow."""
+    """Return the text with U+FFFD in place of characters that XML does not allow."""
     return _FORBIDDEN.sub("\ufffd", text)

@@ -1,4 +1,4 @@
-"""Reads actions, guards and delays of XState: names whose code is elsewhere, and those that Lumen wrote."""
+"""Reads XState's actions, guards and delays: built-in ones, those that Lumen wrote, and names without code."""
 
 import json
 import re
@@ -29,29 +29,29 @@ _UNFIT = re.compile(r"\W+", re.ASCII)
 
 
 class XStateActionReader:
-    """Reads the content of one file's states; `context` gets a key for every guard without code."""
+    """Reads the actions, guards and delays of one file; each guard without code adds a key to `context`."""
 
     def __init__(
         self, source: JsonSource, context: dict[str, Any], names: XStateNames, findings: ConversionFindings
     ) -> None:
         self.source, self.context, self.names, self.findings = source, context, names, findings
         self.wide: dict[str, dict[str, Any]] = {}
-        """Context keys that receive values of several kinds, as in `types`."""
+        """The entries of `types` for context keys that receive values of several kinds."""
         self.surroundings: dict[str, Any] = {}
         self.row = ""
-        """The key of the row of `hears` whose actions are read, empty for other transitions."""
+        """The key of the `hears` row whose actions are being read; empty for other transitions."""
         self._guards: dict[str, str] = {}
 
     def lost(self, where: NodePath, message: str, hint: str = "") -> None:
-        """Report something that could not be converted."""
+        """Report that the data at a path could not be converted."""
         self.findings.lost(self.source.place(where), message, hint)
 
     def changed(self, where: NodePath, message: str, hint: str = "") -> None:
-        """Report something that was converted with a difference."""
+        """Report that the data at a path was converted with a difference."""
         self.findings.changed(self.source.place(where), message, hint)
 
     def actions(self, data: Any, where: NodePath) -> list[ActionData]:
-        """Return actions from a name, an object, or a list of these; report those without code, which become `log`."""
+        """Convert a name, an object or a list of these to actions; report those without code, which become `log`."""
         if data is None:
             return []
         rows = [((*where, i), row) for i, row in enumerate(data)] if isinstance(data, list) else [(where, data)]
@@ -87,7 +87,7 @@ class XStateActionReader:
         return _logged(shown_name(kind, data))
 
     def _params(self, place: str, data: Mapping[str, Any], where: NodePath) -> None:
-        """Report the parts of `params`, XState's other form of an action, that are not converted."""
+        """Report the entries of `params`, an alternative form of built-in actions, that are not converted."""
         params, where = data.get("params"), (*where, "params")
         if params is not None and not isinstance(params, dict):
             self.lost(where, f"`params` of an {place} is not an object", "delete it")
@@ -102,7 +102,7 @@ class XStateActionReader:
             self.lost((*where, key), message, hint)
 
     def _own(self, verb: str, params: Any) -> ActionData | None:
-        """Return an action that Lumen wrote; None if it was changed and is not valid any more."""
+        """Return an action that Lumen wrote, or None if it is no longer valid after an edit."""
         if verb == "if" and isinstance(params, dict):
             action = params
         else:
@@ -111,7 +111,7 @@ class XStateActionReader:
         return action if self.fits(around) else None
 
     def _built_in(self, kind: str, data: Mapping[str, Any], where: NodePath) -> ActionData:
-        """Return an action of XState's own. Raises _AbsentError if JSON does not contain all of it."""
+        """Convert one of XState's built-in actions. Raises _AbsentError if the JSON does not contain all of it."""
         match kind:
             case "xstate.raise":
                 body = self._sent(data)
@@ -147,9 +147,9 @@ class XStateActionReader:
         return {"assign": sound}
 
     def _sent(self, data: Mapping[str, Any]) -> dict[str, Any]:
-        """Return the event of `raise`, `send` and `sendTo` with its data, its delay and its id.
+        """Return the event of `raise`, `send` or `sendTo`, with its data, delay and id.
 
-        Raises _AbsentError without an event.
+        Raises _AbsentError if the event is missing, or the delay or id is invalid.
         """
         event, delay, id = data.get("event"), data.get("delay"), data.get("id")
         fields = event if isinstance(event, dict) else {"type": event}
@@ -168,9 +168,9 @@ class XStateActionReader:
         return body
 
     def _recipient(self, kind: str, data: Mapping[str, Any]) -> str:
-        """Return the actor that receives the event; empty for the machine itself.
+        """Return the actor that receives the event, or empty for the machine itself, the default of version 4's `send`.
 
-        The machine is the default of `send` in version 4.
+        Raises _AbsentError if the JSON does not contain a recipient.
         """
         to = data.get("to")
         if to is None and kind == "xstate.send":
@@ -180,11 +180,11 @@ class XStateActionReader:
         return PARENT if to == f"#_{PARENT}" else self.names.actor(to.removeprefix("#_"))
 
     def do(self, steps: Any) -> list[ActionData] | None:
-        """Return the `do` that Lumen wrote as an invocation; None if it is not valid any more."""
+        """Return the `do` that Lumen wrote as an invocation, or None if it is no longer valid."""
         return steps if isinstance(steps, list) and self.fits({"do": steps}) else None
 
     def fits(self, state: Mapping[str, Any]) -> bool:
-        """Return whether a state with only this would have no errors."""
+        """Return whether a state with only this data has no errors, apart from unknown states."""
         data = {**self.surroundings, "context": self.context, "states": {"a": dict(state)}}
         document, found = plain_document("machine", data)
         if document is None:
@@ -194,9 +194,9 @@ class XStateActionReader:
         return not has_errors([*found, *(d for d in report.diagnostics if d.code != "unknown-state")])
 
     def guard(self, data: Any, where: NodePath) -> str | None:
-        """Return a guard as Lumen's expression: a context key for a name without code.
+        """Return a guard as a Lumen expression, which is a context key for a name without code.
 
-        None (and report it) if it is invalid.
+        Report and return None if the guard is invalid; a name without code is also reported.
         """
         kind = data.get("type") if isinstance(data, dict) else data
         params = data.get("params") if isinstance(data, dict) else None
@@ -211,7 +211,7 @@ class XStateActionReader:
         return f"context.{self._placeholder(kind, data, where)}"
 
     def heard(self, data: Any, where: NodePath) -> TransitionData | None:
-        """Return the key and guard of a row of `hears` from the guard that Lumen wrote; None if that is broken."""
+        """Return the key and guard of a `hears` row from a guard that Lumen wrote; report and return None if invalid."""
         params = data.get("params") if isinstance(data, dict) else None
         key, source = (params.get("row"), params.get("source")) if isinstance(params, dict) else (None, None)
         if isinstance(key, str) and key:
@@ -238,7 +238,7 @@ class XStateActionReader:
         return key
 
     def delay(self, text: str, where: NodePath) -> str | None:
-        """Return Lumen's duration for a delay in milliseconds; None (and report it) for any other text."""
+        """Convert a delay in milliseconds to a Lumen duration; report any other text and return None."""
         try:
             length = float(text)
         except ValueError:
@@ -250,11 +250,11 @@ class XStateActionReader:
 
 
 class _AbsentError(Exception):
-    """An action of XState's own that is not complete in JSON; the message names the missing part."""
+    """A built-in action is incomplete in the JSON; the message names the missing part."""
 
 
 def _text(data: Mapping[str, Any], key: str) -> str:
-    """Return the text or the number of a key, as text. Raises _AbsentError if it is missing."""
+    """Return a key's string or number as text. Raises _AbsentError if the key has neither."""
     value = data.get(key)
     if isinstance(value, bool) or not isinstance(value, str | int | float) or value == "":
         raise _AbsentError(f"`{key}` is not in the file")
@@ -266,7 +266,10 @@ def _logged(text: str) -> ActionData:
 
 
 def shown_name(kind: str, data: Any) -> str:
-    """Return the name of an action, guard or actor with its parameters, which version 4 has beside it."""
+    """Return the name of an action, guard or actor, followed by its parameters as JSON.
+
+    Version 4 has the parameters beside `type`, not in `params`.
+    """
     params = data.get("params") if isinstance(data, dict) else None
     rest = data.items() if isinstance(data, dict) else ()
     beside = {key: value for key, value in rest if key not in ("type", "params")}

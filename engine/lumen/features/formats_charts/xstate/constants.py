@@ -1,4 +1,4 @@
-"""Computed values as other XState tools see them: literal texts are texts, expressions stay."""
+"""Converts computed values for other XState tools: literals to their values, other expressions to text."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -10,7 +10,7 @@ from lumen.language.actions import ComputedValue, Expression
 
 
 def constant(value: ComputedValue) -> Any:
-    """Return a computed value as data: the value of a literal, the source text of any other expression."""
+    """Return a computed value as data, with the value of each literal and the source of any other expression."""
     match value:
         case Expression(source):
             return _text(source)
@@ -22,7 +22,7 @@ def constant(value: ComputedValue) -> Any:
 
 
 def constant_data(data: Any) -> Any:
-    """Return a value of a behaviour file, whose texts are expressions, in the form of `constant`."""
+    """Convert a value of a behaviour file like `constant`. Its texts are expressions; invalid ones stay texts."""
     match data:
         case str():
             return _text(data)

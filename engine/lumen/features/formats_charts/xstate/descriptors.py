@@ -1,4 +1,4 @@
-"""Descriptors of events in Lumen and XState: XState matches names exactly, and tries the longest descriptor first."""
+"""Converts event descriptors between Lumen and XState, which matches names exactly and tries the longest first."""
 
 import re
 from collections.abc import Iterator, Sequence
@@ -13,18 +13,18 @@ _OWN_EVENTS = {
     "xstate.done.actor.": "done.invoke.", "done.invoke.": "done.invoke.",
     "xstate.error.actor.": "error.invoke.", "error.platform.": "error.invoke.",
 }  # fmt: skip
-"""The names of XState's own events, in versions 5 and 4, with Lumen's names."""
+"""Lumen's prefixes for XState's own events, by the prefixes in versions 5 and 4."""
 
 _DESCRIPTOR = re.compile(r"\*|[^\s.*]+(\.[^\s.*]+)*(\.\*)?")
 
 
 def is_descriptor(text: str) -> bool:
-    """Return whether a text can be a key of `on`."""
+    """Return whether a text is a valid key of `on`."""
     return bool(_DESCRIPTOR.fullmatch(text))
 
 
 def own_event(event: str) -> tuple[str, str] | None:
-    """Return Lumen's prefix for an event of XState's own, and the id after it; None for any other event."""
+    """Split one of XState's own events into Lumen's prefix and the id after it; return None for any other event."""
     for begin, ours in _OWN_EVENTS.items():
         if event.startswith(begin) and (id := event.removeprefix(begin)):
             return ours, id
@@ -32,7 +32,7 @@ def own_event(event: str) -> tuple[str, str] | None:
 
 
 def invoke_id(id: str) -> str:
-    """Return the id of an invocation in a form with which an event's name can end."""
+    """Return an invocation's id in a form that is valid at the end of an event's name; `_` if nothing is left."""
     return ".".join(word for word in re.sub(r"[\s*]+", "_", id).split(".") if word) or "_"
 
 
@@ -50,10 +50,10 @@ class EventDescriptors:
             self.wild.update(bare(event) for event in written if event.endswith(".*"))
 
     def arranged(self, state: State) -> dict[str, list[Transition]]:
-        """Return the candidates by XState's descriptors, the longest first; `!done.do.a` for the state's own events.
+        """Return a state's candidates by XState's descriptors, longest first if the order matters.
 
-        A more general candidate that Lumen tries before a specific one is repeated under the specific descriptor,
-        because XState would try it later.
+        The state's own events have keys such as `!done.do.a`. A more general candidate that Lumen tries before a
+        specific one is repeated under the specific descriptor, because XState would try it later.
         """
         rows = [t for t in in_asked_order(state.transitions) if t.event and not t.timed]
         table: dict[str, list[Transition]] = {}
@@ -82,18 +82,21 @@ def bare(descriptor: str) -> str:
 
 
 def longest_first(descriptors: Sequence[str]) -> list[str]:
-    """Return descriptors in XState's order if the order matters; those of the same length keep theirs."""
+    """Return descriptors in XState's order, longest first, if an event can match two of them; else unchanged."""
     return sorted(descriptors, key=lambda d: (d == "*", -len(d))) if _rivals(descriptors) else list(descriptors)
 
 
 def _rivals(descriptors: Sequence[str]) -> bool:
-    """Return whether an event could match two of them: in alphabetical order, a prefix comes directly before."""
+    """Return whether an event can match two of the descriptors.
+
+    In alphabetical order, a prefix comes directly before a name that begins with it.
+    """
     names = sorted(f"{bare(descriptor)}." for descriptor in descriptors)
     return ("*." in names and len(names) > 1) or any(b.startswith(a) for a, b in pairwise(names))
 
 
 def _covers(transition: Transition, event: str) -> bool:
-    """Return whether the transition matches every event below `event`."""
+    """Return whether the transition matches `event` and every event below it."""
     if transition.exact:
         return False
     general = bare(transition.event)

@@ -1,4 +1,4 @@
-"""Invocations of XState: those that Lumen wrote are read back; of others, the transitions at their end are kept."""
+"""Reads XState's invocations: those that Lumen wrote completely, of others only the transitions at their end."""
 
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
@@ -18,9 +18,9 @@ class ActorEnds(NamedTuple):
     """The converted invocations of a state."""
 
     data: dict[str, Any]
-    """`do`, `invoke`, and the transitions at their ends."""
+    """`do`, `invoke`, and the transitions at their end."""
     waits: dict[str, list[TransitionData]]
-    """The transitions at the ends of actors that can't be converted, by their descriptors in `on`."""
+    """The transitions at the end of actors that can't be converted, by their descriptors in `on`."""
 
 
 class XStateInvokeReader:
@@ -30,7 +30,7 @@ class XStateInvokeReader:
         self.parts, self.transitions = parts, transitions
 
     def of(self, state: XStateNode, own: Mapping[str, Any]) -> ActorEnds:
-        """Return the invocations of one state; `own` is Lumen's part of its `meta`."""
+        """Convert a state's invocations; `own` is Lumen's part of the state's `meta`."""
         data: dict[str, Any] = {}
         invokes: list[dict[str, Any]] = []
         waits: dict[str, list[TransitionData]] = {}
@@ -56,7 +56,7 @@ class XStateInvokeReader:
         row: Mapping[str, Any],
         waits: dict[str, list[TransitionData]],
     ) -> None:
-        """Report an actor without code; keep the transitions at its end, as waits for its events."""
+        """Report an actor without code, and add the transitions at its end to `waits`."""
         given = row.get("id")
         id = self.parts.names.actor(given if isinstance(given, str) and given else f"{number}.{state.foreign_id}")
         for key, family in _ENDS.items():
@@ -75,7 +75,7 @@ class XStateInvokeReader:
             )
 
     def _ends(self, state: XStateNode, where: NodePath, row: Mapping[str, Any]) -> dict[str, Any]:
-        """Return the transitions at the end of an invocation that Lumen wrote."""
+        """Return `onDone` and `onError` of an invocation that Lumen wrote, if they have transitions."""
         found = {key: self.transitions.under(state, (*where, key), row[key]) for key in _ENDS if key in row}
         return {key: single(rows) for key, rows in found.items() if rows}
 
@@ -84,7 +84,7 @@ class XStateInvokeReader:
         return self.parts.do(given.get("steps")) if row.get("src") == DO_ACTOR and isinstance(given, dict) else None
 
     def _invoked(self, own: Mapping[str, Any], where: NodePath, row: Mapping[str, Any]) -> dict[str, Any] | None:
-        """Return the behaviour that Lumen wrote as an actor; None for any other actor."""
+        """Return the `invoke` row that Lumen wrote as an actor; None for any other actor or an invalid row."""
         inputs, id, behavior = own.get("invoke"), row.get("id"), row.get("src")
         if not isinstance(inputs, dict) or id not in inputs or not isinstance(behavior, str):
             return None
@@ -98,7 +98,10 @@ class XStateInvokeReader:
         return data
 
     def _rows(self, state: XStateNode) -> Iterator[tuple[int, NodePath, Mapping[str, Any]]]:
-        """Yield each item of `invoke` with its number and its place; version 4 allows a name alone."""
+        """Yield the number, place and object of each item of `invoke`; report invalid items.
+
+        Version 4 allows a name alone, which is its `src`.
+        """
         data, where = state.source.get("invoke"), (*state.where, "invoke")
         rows = [((*where, i), row) for i, row in enumerate(data)] if isinstance(data, list) else [(where, data)]
         for number, (place, row) in enumerate(rows):

@@ -1,4 +1,4 @@
-"""A JSON file whose values have known lines."""
+"""Reads JSON files, with the place of each value."""
 
 import json
 from dataclasses import dataclass
@@ -12,25 +12,25 @@ from lumen.project.yaml_nodes import DUPLICATE_KEY
 from lumen.project.yaml_reader import parse
 
 MAX_JSON_LEVELS = 95
-"""The most nested objects and lists."""
+"""The maximum depth of nested objects and lists."""
 
 
 @dataclass(frozen=True)
 class JsonSource:
-    """The data, and the place of each part of it."""
+    """A file's data, and the place of each value."""
 
     data: Any
     document: Document
     repeated: tuple[tuple[Place, str], ...]
-    """The places and names of keys that an object repeats; the last one counts."""
+    """The places of keys that an object repeats, with messages; only the last value is used."""
 
     def place(self, path: NodePath) -> Place:
-        """Return the place of a key (or item), or of the nearest enclosing one."""
+        """Return the place of a key or item, or of the nearest enclosing one that is known."""
         return self.document.place(path, key=True)
 
 
 def parse_json(file: str, content: bytes) -> JsonSource:
-    """Return the file. Raises ForeignFileError if it is not JSON, or too large."""
+    """Parse a file. Raises ForeignFileError if it is not JSON, too large, or nested too deeply."""
     check_size(file, content)
     try:
         data = foreign_json(content)

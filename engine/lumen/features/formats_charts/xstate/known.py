@@ -1,4 +1,4 @@
-"""The parts of XState's machine configurations that the importer knows, for versions 5 and 4."""
+"""The parts of XState's machine configurations, versions 5 and 4, that the importer recognizes."""
 
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
@@ -81,7 +81,7 @@ KNOWN: FormatTable = {
                    "buttons", "output", "invoke"))
     ),
 }  # fmt: skip
-"""The keys of each object."""
+"""The keys of each kind of object: those that are read, lost or meaningless."""
 
 STATE_KINDS = ("atomic", "compound", "parallel", "final", "history")
 BOOLEANS = frozenset(("reenter", "internal", "parallel"))
@@ -97,7 +97,7 @@ _OBJECTS_OF_AUTHORS = frozenset(("context", "meta", "params", "input", "data", "
 
 
 def losses(place: str, names: Iterable[str]) -> Iterator[tuple[str, str, str]]:
-    """Yield each of these keys of a `place` (an object of KNOWN) that is not converted, with the message and a hint."""
+    """Yield each name that is not converted, with a message and a hint; `place` is the object's kind in KNOWN."""
     known, whose = KNOWN[place], f"of {'an' if place[0] in 'aeix' else 'a'} {place}"
     for name, hint in known.losses(names):
         if name in known.lost:
@@ -107,12 +107,12 @@ def losses(place: str, names: Iterable[str]) -> Iterator[tuple[str, str, str]]:
 
 
 def is_version_4(machine: Mapping[str, Any]) -> bool:
-    """Return whether a machine has words of version 4 only, and none of version 5 only or written by Lumen."""
+    """Return whether a machine uses features of version 4, and none that only version 5 or Lumen has."""
     old = False
     waiting: list[tuple[str, Any]] = [("", machine)]
     while waiting:
         within, item = waiting.pop()
-        named = within in ("states", "on", "after")  # there the keys are the author's
+        named = within in ("states", "on", "after")  # objects whose keys the author chose
         children = item.items() if isinstance(item, dict) else enumerate(item) if isinstance(item, list) else ()
         for key, value in children:
             word = key if isinstance(key, str) and not named else ""

@@ -1,4 +1,4 @@
-"""Lumen's names for the events and the actors of one XState file."""
+"""Lumen's names for the events and actors of an XState file."""
 
 import re
 from collections.abc import Callable, Iterator, Mapping
@@ -14,7 +14,7 @@ _SENDERS = ("xstate.raise", "xstate.send", "xstate.sendTo")
 
 
 class XStateNames:
-    """Maps the names in an XState file to Lumen's: no two become the same, and each becomes the same everywhere."""
+    """Maps the names in an XState file to Lumen's: different names stay different in the whole behaviour."""
 
     def __init__(self, outline: XStateStateTree) -> None:
         self.outline = outline
@@ -22,7 +22,7 @@ class XStateNames:
         self.actors = self._free("actor", dict(_actors((), outline.source.data)))
 
     def event(self, name: str) -> str:
-        """Return Lumen's name for an event, or for a descriptor, of XState's own or of the author's."""
+        """Return Lumen's name for an event or a descriptor, both XState's own and the author's."""
         if own := own_event(name):
             family, id = own
             if "*" in id:
@@ -31,16 +31,16 @@ class XStateNames:
         return self.events.get(name) or _BLANKS.sub("_", name.strip())
 
     def actor(self, id: str) -> str:
-        """Return Lumen's id of an actor."""
+        """Return Lumen's id for an actor."""
         return self.actors.get(id) or invoke_id(id)
 
     def _state(self, id: str) -> str:
-        """Return Lumen's name of the state with that id; an id of no state is only cleaned."""
+        """Return Lumen's name for the state with this id, or the id in a valid form if there is no such state."""
         found = self.outline.resolve(self.outline.root, f"#{id}")
         return (found.name or self.outline.title) if found else invoke_id(id)
 
     def _free(self, kind: str, names: Mapping[str, NodePath]) -> dict[str, str]:
-        """Map each name to one that a behaviour can use; report those that change."""
+        """Map each name to a unique one that is valid in a behaviour; report names that change."""
         cleaned: Callable[[str], str] = invoke_id if kind == "actor" else lambda name: _BLANKS.sub("_", name.strip())
         found = {name: name for name in names if cleaned(name) == name}
         taken = set(found)
@@ -54,7 +54,7 @@ class XStateNames:
 
 
 def _events(where: NodePath, data: Any) -> Iterator[tuple[str, NodePath]]:
-    """Yield each name of an event that is awaited or sent, and its place."""
+    """Yield the name and place of each event that is awaited or sent."""
     if isinstance(data, list):
         for number, item in enumerate(data):
             yield from _events((*where, number), item)
@@ -83,7 +83,7 @@ def _events(where: NodePath, data: Any) -> Iterator[tuple[str, NodePath]]:
 
 
 def _actors(where: NodePath, state: Any) -> Iterator[tuple[str, NodePath]]:
-    """Yield the id and the place of each actor that a state, or a state in it, invokes."""
+    """Yield the id and place of each actor that a state or an inner state invokes by id."""
     if not isinstance(state, dict):
         return
     data = state.get("invoke")

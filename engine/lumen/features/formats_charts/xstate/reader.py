@@ -26,9 +26,8 @@ _MACHINE = ("types", "events", "phrases", "answers", "lists", "properties", "ren
 def read_xstate(file: str, content: bytes, title: str) -> tuple[dict[str, Any], list[Diagnostic]]:
     """Return the data of a behaviour file, and findings about lost and changed parts.
 
-    Raises ForeignFileError if the file is not the configuration of a machine with states.
-
-    `title` is the behaviour's name if the machine has no id.
+    `title` is the behaviour's name if the machine has no id. Raises ForeignFileError if the file is not the
+    configuration of a machine with states.
     """
     source = parse_json(file, content)
     if (
@@ -71,7 +70,7 @@ def _context(data: Mapping[str, Any], findings: ConversionFindings, outline: XSt
 
 
 class _XStateReader:
-    """Reads the states of one file, from the outermost to the innermost."""
+    """Reads the states of one file, from the outermost state to the innermost."""
 
     def __init__(self, outline: XStateStateTree, parts: XStateActionReader, findings: ConversionFindings) -> None:
         self.outline, self.parts, self.findings = outline, parts, findings
@@ -119,7 +118,7 @@ class _XStateReader:
         return data
 
     def _unmeant(self, state: XStateNode) -> None:
-        """Report the keys of a state, and their values, that are not converted."""
+        """Report a state's keys and values that are not converted."""
         source, kind = state.source, state.kind
         place = f"{kind} state" if kind in ("parallel", "final", "history") else "state"
         place = place if state.parent else "machine"
@@ -156,7 +155,7 @@ class _XStateReader:
                 )
 
     def _is_own(self, state: XStateNode, key: str, value: Any) -> bool:
-        """Return whether a part of `meta.lumen` is one that Lumen writes there."""
+        """Return whether an entry of a state's `meta.lumen` is valid there."""
         match key:
             case "onReload":
                 return isinstance(value, str) and self.outline.resolve(state, value) is not None
@@ -184,7 +183,11 @@ class _XStateReader:
         return data if "target" in data else data | self._default(state)
 
     def _default(self, state: XStateNode) -> dict[str, Any]:
-        """Return the target of a history without one: the states in which its parent begins."""
+        """Return the `target` of a history without a valid one.
+
+        It is the parent's initial state, or all children that can be active in a parallel state. If the initial state
+        is a history, that is reported, and the target is the first regular child.
+        """
         home = state.parent
         assert isinstance(home, XStateNode)  # the machine itself is never read as a history
         if home.kind == "compound":
@@ -197,7 +200,10 @@ class _XStateReader:
         return {"target": self.transitions.named(state, list(home.regular))}
 
     def _initial(self, state: XStateNode) -> str:
-        """Return the key of the child entered first; if actions run before, that of a state that runs them."""
+        """Return a reference to the state entered first, or to an additional state that runs actions before.
+
+        An invalid target is reported and replaced by the first inner state.
+        """
         where = (*state.where, "initial")
         first = state.regular[0]
         data = state.source.get("initial", first.original)
@@ -257,7 +263,7 @@ class _XStateReader:
         return data
 
     def _on(self, state: XStateNode, waits: dict[str, list[TransitionData]]) -> dict[str, Any]:
-        """Return the candidates of events and of awaited ends as `on`, and the rows of `hears`."""
+        """Return `on`, which includes the candidates in `waits`, and `hears`; either is left out if empty."""
         rows: dict[str, list[TransitionData]] = {}
         hears: dict[str, list[TransitionData]] = {}
         for event, where, data in self._table(state, "on", "event"):
@@ -291,7 +297,10 @@ class _XStateReader:
         return rows
 
     def _table(self, state: XStateNode, key: str, named: str) -> list[tuple[str, NodePath, Any]]:
-        """Return the keys of `on` or `after`, their places and transitions; version 4 also has a list of these."""
+        """Return the keys of `on` or `after`, their places and transitions; report invalid items.
+
+        Version 4 also allows a list of transitions, which have the key under `named`.
+        """
         table, where = state.source.get(key), (*state.where, key)
         if isinstance(table, dict):
             return [(name, (*where, name), rows) for name, rows in table.items()]
@@ -316,7 +325,7 @@ class _XStateReader:
 
 
 def _lumen(state: XStateNode) -> Mapping[str, Any]:
-    """Return Lumen's own part of `meta`."""
+    """Return `meta.lumen`, or an empty map if there is none."""
     meta = state.source.get("meta")
     own = meta.get("lumen") if isinstance(meta, dict) else None
     return own if isinstance(own, dict) else {}

@@ -1,4 +1,4 @@
-"""The states of an XState machine before their content is read, and the meaning of its targets."""
+"""The states of an XState machine before their content is read, and the resolution of targets."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -15,17 +15,17 @@ class XStateNode(ForeignState):
     __slots__ = ("named", "original", "regular", "where")
 
     original: str
-    """Its key in the file."""
+    """The state's key in the file."""
     where: NodePath
-    """Its path in the file."""
+    """The state's path in the file."""
     named: "dict[str, XStateNode]"
-    """Its children, by their keys in the file."""
+    """The children, by their keys in the file."""
     regular: "list[XStateNode]"
-    """The children that can be active."""
+    """The children that can be active, which are all except histories."""
 
     @property
     def kind(self) -> str:
-        """The kind of the state, by its type and its children."""
+        """The state's kind, from its declared type and its children."""
         kind = declared_kind(self.source)
         if kind in ("final", "history") or (kind == "parallel" and self.regular):
             return kind
@@ -33,19 +33,19 @@ class XStateNode(ForeignState):
 
     @property
     def foreign_id(self) -> str:
-        """XState's id of the state: its own, or the machine's id and the keys down to it."""
+        """XState's id for the state: its own, or its parent's and its key; `(machine)` for a machine without an id."""
         if isinstance(self.source.get("id"), str) and self.source["id"]:
             return str(self.source["id"])
         below = self.parent.foreign_id if isinstance(self.parent, XStateNode) else ""
         return f"{below}.{self.original}" if below else "(machine)"
 
     def child(self, key: str) -> "XStateNode | None":
-        """Return the child of that key, None if there is none."""
+        """Return the child with this key in the file, or None if there is none."""
         return self.named.get(key)
 
 
 def declared_kind(data: Mapping[str, Any]) -> str:
-    """Return the kind of a state by XState's rules: `history: true` needs no `type`, and version 4 had `parallel`."""
+    """Return the kind that a state declares, or empty: `history` needs no `type`, and version 4 has `parallel: true`."""
     if data.get("type"):
         return str(data["type"])
     if data.get("parallel") is True:
@@ -54,11 +54,11 @@ def declared_kind(data: Mapping[str, Any]) -> str:
 
 
 class XStateStateTree:
-    """The tree of states, and all of them by id."""
+    """The tree of states under `root`, and all states with an id by that id."""
 
     def __init__(self, source: JsonSource, title: str, findings: ConversionFindings) -> None:
         self.source, self.findings = source, findings
-        own = source.data.get("id") or source.data.get("key")  # version 4's word for it
+        own = source.data.get("id") or source.data.get("key")  # version 4's name for `id`
         self.machine_id = own if isinstance(own, str) and own else "(machine)"
         self.title = clean_id(own) if isinstance(own, str) and own else title
         self.ids = set(_ids(source.data))
@@ -134,7 +134,7 @@ class XStateStateTree:
         return states
 
     def resolve(self, state: XStateNode, target: str) -> XStateNode | None:
-        """Return the state that a target of this one refers to, None if it does not exist."""
+        """Return the state that `target` names in a transition of `state`; None if it does not exist."""
         if target.startswith("#"):
             return self._by_id(target[1:])
         if target.startswith("."):
@@ -155,7 +155,7 @@ class XStateStateTree:
 
 
 def _descend(state: XStateNode | None, path: str) -> XStateNode | None:
-    """Return the state at the end of the keys, which may contain dots themselves; None if it does not exist."""
+    """Return the state at a path of keys, the last of which can contain dots; None if it does not exist."""
     if state is None:
         return None
     if (found := state.child(path)) is not None:

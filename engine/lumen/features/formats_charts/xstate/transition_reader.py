@@ -1,4 +1,4 @@
-"""Reads transitions of XState as Lumen's."""
+"""Reads XState's transitions as Lumen's."""
 
 from typing import Any
 
@@ -17,15 +17,16 @@ class XStateTransitionReader:
         self.outline, self.parts, self.version_4 = outline, parts, version_4
 
     def rows(self, state: XStateNode, key: str) -> list[TransitionData]:
-        """Return the transitions under a key of the state."""
+        """Return the transitions under one of the state's keys."""
         return self.under(state, (*state.where, key), state.source[key], eventless=key == "always")
 
     def under(
         self, state: XStateNode, where: NodePath, data: Any, *, eventless: bool = False, heard: bool = False
     ) -> list[TransitionData]:
-        """Return transitions from a target, an object, or a list of these; a row of `hears` has its key as `hears`.
+        """Convert a target, an object or a list of these to transitions; report and leave out invalid ones.
 
-        If they are `eventless`, those without a guard and a target are reported and left out.
+        With `eventless`, a transition without a guard and a target is invalid. With `heard`, a row of `hears` has its
+        key as `hears`.
         """
         rows = [((*where, i), row) for i, row in enumerate(data)] if isinstance(data, list) else [(where, data)]
         found = [self._row(state, place, {} if row is None else row, heard) for place, row in rows]
@@ -83,7 +84,7 @@ class XStateTransitionReader:
     def _reenters(self, data: dict[str, Any]) -> bool:
         """Return whether a transition leaves its own state and enters it again.
 
-        In version 4 it does, unless `internal` or a target that begins with a dot prevents it.
+        Without `reenter` or `internal`, it does so only in version 4, and only if no target begins with a dot.
         """
         if isinstance(data.get("reenter"), bool):
             return bool(data["reenter"])
@@ -93,7 +94,7 @@ class XStateTransitionReader:
         return self.version_4 and not any(isinstance(t, str) and t.startswith(".") for t in targets)
 
     def _state_in(self, data: Any, where: NodePath) -> str | None:
-        """Return version 4's `in` as a condition; None (and report it) if it names no state by its id."""
+        """Return version 4's `in` as a condition; report it and return None if it is not `#` and a state's id."""
         found = self.outline.resolve(self.outline.root, data) if isinstance(data, str) and data[:1] == "#" else None
         if found is None:
             self.parts.lost(
@@ -105,7 +106,7 @@ class XStateTransitionReader:
         return f"In('{found.name or self.outline.title}')"
 
     def targets(self, state: XStateNode, data: Any, where: NodePath) -> list[XStateNode] | None:
-        """Return the target states; None (and report it) if one does not exist or they can't be active together."""
+        """Return the target states. Report and return None if one does not exist or they can't be active together."""
         found = []
         for text in data if isinstance(data, list) else [data]:
             target = self.outline.resolve(state, text) if isinstance(text, str) else None
@@ -120,12 +121,16 @@ class XStateTransitionReader:
         return found
 
     def named(self, state: XStateNode, targets: list[XStateNode]) -> Any:
-        """Return the name by which a state refers to its target; a list for several targets."""
+        """Return the state's reference to its target, or a list of references to several targets."""
         names = [state.calls(target, self.outline.title) for target in targets]
         return names[0] if len(names) == 1 else names
 
     def _way(self, state: XStateNode, where: NodePath, targets: list[XStateNode], reenter: bool) -> TransitionData:
-        """Return `target` and `reenter`; a transition to the state itself that does not re-enter it stays in it."""
+        """Return `target` and `reenter`, if needed.
+
+        Without `reenter`, a transition from a state to itself stays in it: an atomic state needs no target, and the
+        target of a compound state is its initial child.
+        """
         if targets == [state] and not reenter and state.kind == "atomic":
             return {}
         if targets == [state] and not reenter and state.kind == "compound":
@@ -144,7 +149,7 @@ class XStateTransitionReader:
         return row
 
     def _parallel(self, state: XStateNode, where: NodePath, targets: list[XStateNode], reenter: bool) -> None:
-        """Report a transition that leaves and enters more by W3C's rule: a parallel state is never its domain."""
+        """Report a transition whose domain would be a parallel state: by W3C's rule, it leaves and enters that, too."""
         domain: XStateNode | None = (
             state if not reenter and all(t is state or t.lies_below(state) for t in targets) else None
         )

@@ -1,4 +1,4 @@
-"""Writes a machine as an XState v5 configuration: JSON for `createMachine`."""
+"""Writes a machine as an XState v5 configuration in JSON, for `createMachine`."""
 
 import json
 from collections.abc import Iterator, Sequence
@@ -26,11 +26,11 @@ _HINT = "write an implementation with that name for XState"
 
 
 def write_xstate(machine: MachineDefinition, place: PlaceOfPath) -> tuple[str, list[Diagnostic]]:
-    """Return the configuration, and findings about what is missing in it or needs code.
+    """Return the configuration, and findings about parts that are missing from it or need code.
 
-    An action of Lumen is `{"type": "lumen.say", "params": …}`, a guard `{"type": "lumen.expression", "params":
-    {"source": …}}`, a row of `hears` the guard `lumen.hears`, and `do` an invocation of `lumen.do`: their code belongs
-    in `setup`. Whatever XState lacks is in `meta`.
+    An action becomes `{"type": "lumen.say", "params": …}`, a guard `{"type": "lumen.expression", "params":
+    {"source": …}}`, a row of `hears` the guard `lumen.hears`, and `do` an invocation of `lumen.do`. Their code belongs
+    in `setup`. Other features that XState lacks are in `meta`.
     """
     report = ExportReport(place, _HINT)
     data = _XStateWriter(machine, report).data()
@@ -66,7 +66,10 @@ class _XStateWriter:
         return data
 
     def _begin(self, state: State, data: dict[str, Any]) -> dict[str, Any]:
-        """Set `initial`; if it is not a single child, return a state that leads there at once, by its key."""
+        """Set `initial` in `data`, and return the additional state that it needs, by key; empty if it needs none.
+
+        XState's `initial` must be a single child, so the additional state immediately enters any other target.
+        """
         if state.kind is not StateKind.COMPOUND:
             return {}
         if len(state.initial) == 1 and self.machine.states[state.initial[0]].parent == state.path:
@@ -128,14 +131,14 @@ class _XStateWriter:
         return data
 
     def _rows(self, state: State) -> dict[str, list[Any]]:
-        """Return the transitions of `on`, and of the state's own events, by XState's descriptors."""
+        """Return the transitions on events, including the state's own, by XState's descriptors."""
         table = self.descriptors.arranged(state)
         return {
             event: rows for event, found in table.items() if (rows := [self._row(state, t) for t in self._kept(found)])
         }
 
     def _kept(self, found: list[Transition]) -> Iterator[Transition]:
-        """Yield the transitions that can be written; report rows of `hears` with phrases of a list's entry."""
+        """Yield the transitions that can be written; report the others, whose phrases come from a list entry."""
         for transition in found:
             if transition.hears and not key_of(transition.hears) and as_guard(transition) is None:
                 message = f"`{transition.hears.title}` is left out: phrases from a list entry can't be converted"
@@ -159,9 +162,9 @@ class _XStateWriter:
         return data
 
     def _invoke(self, invoke: Invoke, rows: dict[str, list[Any]]) -> dict[str, Any]:
-        """Return an actor named like the behaviour, and report that `setup` must provide it.
+        """Return an actor with the behaviour's name, and report that `setup` must provide it.
 
-        The input of the invocation is also in `meta`, as Lumen's expressions.
+        Its `onDone` and `onError` are removed from `rows`. Its input is also in `meta`, as Lumen's expressions.
         """
         hint = f"give `setup` the actor `{invoke.behavior}` from `lumen export xstate {invoke.behavior}`"
         self.report.changed(f"`invoke` of `{invoke.behavior}` becomes an actor", invoke.where, hint)
@@ -197,16 +200,16 @@ class _XStateWriter:
         return row
 
     def _heard(self, transition: Transition, row: Hears) -> dict[str, Any]:
-        """Return the guard of a row of `hears`: one that `setup` must implement, or an expression.
+        """Return the guard for a row of `hears`: `lumen.hears`, or an expression if its phrases come from a list entry.
 
-        The change is reported, since other tools do not have such rows.
+        The change is reported, since other tools lack such rows.
         """
         if key := key_of(row):
             self.report.changed(f"`{row.title}` becomes a guard `{HEARS_GUARD}`", transition.where, LOST_ELSEWHERE)
             source = {"source": as_written(transition.guard.source)} if transition.guard else {}
             return {"type": HEARS_GUARD, "params": {"row": key, **source}}
         condition = as_guard(transition)
-        assert condition is not None  # others are left out
+        assert condition is not None  # `_kept` leaves out the others
         self.report.changed(f"`{row.title}` becomes the guard `{condition.source}`", transition.where, LOST_ELSEWHERE)
         return self._guard(condition, transition)
 
@@ -215,7 +218,7 @@ class _XStateWriter:
         return {"type": EXPRESSION_GUARD, "params": {"source": guard.source}}
 
     def _leaves_itself(self, state: State, transition: Transition) -> bool:
-        """Return whether XState would stay in a state that Lumen leaves."""
+        """Return whether Lumen leaves a state in which XState, without `reenter`, would stay."""
         prefix = f"{state.path}." if state.path else ""
         within = all(path == state.path or path.startswith(prefix) for path in transition.targets)
         return within and (
