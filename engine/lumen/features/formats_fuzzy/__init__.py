@@ -1,4 +1,4 @@
-"""Fuzzy controllers of other tools."""
+"""Import and export of other tools' fuzzy controllers."""
 
 from lumen.feature import Exporter, Feature, Importer
 

@@ -1,8 +1,8 @@
-"""Reads Fuzzy Control Language (IEC 61131-7), also jFuzzyLogic's and FuzzyLite's, as the data of a controller file.
+"""Reads Fuzzy Control Language as the data of a controller file: IEC 61131-7, and jFuzzyLogic's and FuzzyLite's dialects.
 
 `FUNCTION_BLOCK` contains `VAR_INPUT`, `VAR_OUTPUT`, a `FUZZIFY` for each input, a `DEFUZZIFY` for each output, and
-`RULEBLOCK`s. A declaration may name several variables and their range. A term is a list of points, a single value, or
-(not in the standard) a shape with its parameters.
+`RULEBLOCK`s. A declaration can name several variables and their range. A term is a list of points, a single value or,
+in the dialects, a shape with parameters.
 """
 
 import re
@@ -57,21 +57,21 @@ KNOWN: FormatTable = {
         meaningless={"FUNCTION_BLOCK name": "the controller has the name of the file"},
     ),
 }
-"""The parts of a function block that are carried over, by section."""
+"""The parts of a function block that are read or meaningless, by section."""
 
 _OPERATORS = ("AND", "OR", "ACT", "ACCU")
 _USUAL = {"conjunction": "minimum", "disjunction": "maximum", "implication": "minimum"}
 
 
 class FclStatement(NamedTuple):
-    """The text before a `;`, and the offset at which the text begins."""
+    """The text before a `;`, and its offset in the file."""
 
     text: str
     offset: int
 
 
 class FclSection(NamedTuple):
-    """A section `KIND name` with its statements, from `offset` to `end` in the text."""
+    """A section `KIND name` with its statements, from `offset` to `end` in the text; `VAR_…` has no name."""
 
     kind: str
     name: str
@@ -81,9 +81,9 @@ class FclSection(NamedTuple):
 
 
 def read_fcl(file: str, content: bytes, title: str) -> tuple[dict[str, Any], list[Diagnostic]]:
-    """Return the data of a controller file, and findings.
+    """Return the data of a controller file, and findings about lost and changed parts.
 
-    Raises ForeignFileError if there is no function block, or if no output or rule is left.
+    Raises ForeignFileError if the file has no `FUZZIFY`, or if no output or rule is left.
     """
     findings = ConversionFindings()
     text = text_of(file, content, findings)
@@ -98,9 +98,9 @@ def read_fcl(file: str, content: bytes, title: str) -> tuple[dict[str, Any], lis
 
 
 def _without_comments(text: str) -> str:
-    """Return the text with comments replaced by blanks, so that offsets stay the same.
+    """Return the text with comments replaced by spaces, which preserves offsets.
 
-    An unclosed comment extends to the end.
+    An unclosed comment extends to the end of the text.
     """
     parts, at = [], 0
     while match := _COMMENT.search(text, at):
@@ -152,7 +152,7 @@ class _FclReader:
         return self.place(statement.offset, len(lines_of(statement.text)[0]))
 
     def first(self, text: str) -> str:
-        """Return the text up to a second function block; report that block if there is one."""
+        """Return the text before a second function block; report that block if there is one."""
         begins = list(re.finditer(r"\bFUNCTION_BLOCK\b", text, re.IGNORECASE))
         if len(begins) < 2:
             return text
@@ -161,7 +161,7 @@ class _FclReader:
         return text[: begins[1].start()]
 
     def tell_outside(self, text: str, sections: list[FclSection]) -> None:
-        """Report text outside the sections, each part at its first word."""
+        """Report text before, between and after the sections, each time at its first word."""
         for begin, end in zip([0, *(s.end for s in sections)], [*(s.offset for s in sections), len(text)], strict=True):
             outside = text[begin:end]
             at = 0
@@ -174,7 +174,7 @@ class _FclReader:
                 self.findings.lost(self.place(begin + at, len(word[0])), message, hint)
 
     def tell_cut(self, text: str) -> None:
-        """Report a missing `END_FUNCTION_BLOCK`: the file may be cut off."""
+        """Report a missing `END_FUNCTION_BLOCK`, a sign that the file is incomplete."""
         if re.search(r"\bFUNCTION_BLOCK\b", text, re.IGNORECASE) and not re.search(
             r"\bEND_FUNCTION_BLOCK\b", text, re.IGNORECASE
         ):
@@ -203,7 +203,7 @@ class _FclReader:
     def declare(self, section: FclSection) -> None:
         """Read declarations such as `a, b : REAL;`, and their range.
 
-        The range is written in the type, `REAL (0 .. 9)`, or after the declaration, `RANGE := (0 .. 9);`.
+        The range follows the type, `REAL (0 .. 9)`, or the whole declaration, `RANGE := (0 .. 9);`.
         """
         names: list[str] = []
         for statement in section.statements:
@@ -231,7 +231,7 @@ class _FclReader:
                 self.findings.lost(self.at(statement), f"`{match['rest'][:40]}` in a declaration is left out")
 
     def asked(self, sections: list[FclSection]) -> None:
-        """Add the inputs without terms that formulas use, with their declared range, else with an infinite one."""
+        """Add inputs that have no terms but are used in formulas, with their declared or else an infinite range."""
         formulas = " ".join(t.text for s in sections if s.kind == "DEFUZZIFY" for t in s.statements)
         words = set(
             re.findall(r"[A-Za-z_]\w*", " ".join(re.findall(r"(?i):=\s*FUNCTION\b(.*?)(?= TERM |$)", formulas)))
@@ -244,9 +244,9 @@ class _FclReader:
                 self.draft.variable("inputs", name, self.at(statement))["range"] = ranged(*ends)
 
     def operators(self, section: FclSection) -> dict[str, Any]:
-        """Return a rule block's AND, OR and ACT; its ACCU is kept for the outputs.
+        """Return a rule block's AND, OR and ACT; store its ACCU for the outputs.
 
-        Settings that are repeated, and operators that do not match each other, are reported.
+        A missing AND or OR is derived from the other. Unknown, repeated and inconsistent settings are reported.
         """
         found: dict[str, Any] = {}
         partners: dict[str, str] = {}
@@ -345,9 +345,9 @@ class _FclReader:
                     self.findings.lost(self.at(statement), f"an output can't have `{key} : {said}`")
 
     def accumulated(self, section: FclSection, spec: dict[str, Any]) -> None:
-        """Set how the conclusions about an output are combined: by its own ACCU, else by that of the rule blocks.
+        """Set the aggregation of an output's conclusions from its own ACCU, else from the rule blocks' ACCU.
 
-        Without either, they are summed for a weighted defuzzifier; otherwise their maximum is used, which is reported.
+        Without either, a weighted defuzzifier sums them, and any other uses their maximum, which is reported.
         """
         weighted = spec.get("defuzzifier") in WEIGHTED_DEFUZZIFIERS
         said = spec.pop("aggregation", "") or self.accu.get("", "")
@@ -359,9 +359,9 @@ class _FclReader:
         spec.update(operators({"aggregation": said or None}, {"aggregation": usual}))
 
     def term(self, variable: str, spec: dict[str, Any], name: str, said: str, statement: FclStatement) -> list[float]:
-        """Add a term; return the x of its points, or of both ends of its shape.
+        """Add a term; return the x of its points or of its shape's ends, from which a missing range is derived.
 
-        The variable's range follows from these.
+        The list is empty for a formula, and for a term that can't be read, which is reported.
         """
         points = [float(number) for point in _POINT.findall(said) for number in point]
         if points and not _POINT.sub("", said).strip():
@@ -382,7 +382,7 @@ class _FclReader:
     def function(
         self, variable: str, spec: dict[str, Any], name: str, text: str, statement: FclStatement
     ) -> list[float]:
-        """Add a term with a single value that is computed from the inputs; return no points."""
+        """Add a term whose value is computed from the inputs, or report why it is left out; return an empty list."""
         output = spec is self.draft.sides["outputs"].get(self.draft.names[variable])
         inputs = {theirs: ours for theirs, ours in self.draft.names.items() if ours in self.draft.sides["inputs"]}
         found = function(text, inputs) if output else Trouble("the terms of an input must be sets", 0)
@@ -398,7 +398,8 @@ class _FclReader:
     def single(self, variable: str, spec: dict[str, Any], name: str, x: float, statement: FclStatement) -> list[float]:
         """Add a term with a single value; return `[x]`.
 
-        It is a constant if the defuzzifier is weighted, else a set without width.
+        The term is a constant if the defuzzifier is weighted (an output's `centroid` becomes weighted), else a set
+        without width.
         """
         if spec.get("defuzzifier", "centroid") == "centroid" and spec is self.draft.sides["outputs"].get(
             self.draft.names[variable]

@@ -1,6 +1,7 @@
-"""The words of Fuzzy Control Language in the standard, jFuzzyLogic and FuzzyLite, with their meanings in Lumen.
+"""Translates the keywords of Fuzzy Control Language (the standard, jFuzzyLogic and FuzzyLite) to Lumen's.
 
-`AND` or `OR` alone also determines the other (IEC 61131-7, De Morgan; jFuzzyLogic pairs HAMACHER and EINSTEIN).
+If only `AND` or `OR` is set, it also determines the other, by De Morgan's laws (IEC 61131-7); jFuzzyLogic pairs HAMACHER
+and EINSTEIN.
 """
 
 import re
@@ -28,7 +29,7 @@ ORS: Mapping[str, tuple[str, str]] = {
     "einstein": ("einstein-sum", "hamacher-product"), "hsum": ("hamacher-sum", "hamacher-product"),
     "esum": ("einstein-sum", "einstein-product"),
 }  # fmt: skip
-"""The meaning of each word, and the matching word for the other operator if that is not given."""
+"""Lumen's operator for each keyword of AND or OR, and the matching one in case the other is not set."""
 
 ACTS: Mapping[str, str] = {word: meant for word, (meant, _) in ANDS.items()}
 ACCUS: Mapping[str, str] = {
@@ -46,9 +47,9 @@ _KINDS = {
 
 
 def shape(said: str) -> tuple[str, list[float] | str] | None:
-    """Return the kind of a term and its parameters in Lumen's order, or its formula; None if it can't be read.
+    """Return a term's kind, and its parameters in Lumen's order or its formula; None if it can't be read.
 
-    jFuzzyLogic's words have its order of parameters; `Cosine` in mixed case is FuzzyLite's.
+    jFuzzyLogic's shapes have its order of parameters. `Cosine` in mixed case is FuzzyLite's.
     """
     words = said.split()
     kind = _KINDS.get(words[0].lower(), "") if words else ""
@@ -74,10 +75,10 @@ def _sigmoid(slope: float, inflection: float) -> str:
 
 
 def function(text: str, names: Mapping[str, str]) -> str | Trouble:
-    """Return jFuzzyLogic's `FUNCTION` as Lumen's formula; `names` maps the file's inputs to Lumen's.
+    """Translate jFuzzyLogic's `FUNCTION` to a Lumen formula, or return the problem in it.
 
-    Formulas whose order of operations is unusual in FCL (`a % b * c`, `2 ^ 3 ^ 2`, `-2 ^ 2`) are refused instead of
-    guessed, and so are those with `x`, which has no meaning in FCL.
+    `names` maps the file's inputs to Lumen's. Formulas whose order of operations is unusual in FCL (`a % b * c`,
+    `2 ^ 3 ^ 2`, `-2 ^ 2`) are rejected, and so is `x`, unless it is an input.
     """
     doubtful = text.count("^") > 1 or ("%" in text and re.search(r"[*/^]|%.*%", text))
     if doubtful or ("^" in text and re.search(r"[-+][\d.]", text)):
@@ -90,10 +91,10 @@ def function(text: str, names: Mapping[str, str]) -> str | Trouble:
 
 
 def reach(kind: str, parameters: list[float]) -> list[float]:
-    """Return a shape's beginning and end in jFuzzyLogic (`estimateUniverse`); nothing for shapes it lacks.
+    """Return the x of a shape's ends as in jFuzzyLogic (`estimateUniverse`); empty for shapes it lacks.
 
-    A gaussian reaches 4 sigma from its mean, a bell to a membership of 0.001, a sigmoid 9 / slope from its
-    inflection.
+    A gaussian ends 4 sigma from its mean, a bell at a membership of 0.001, and a sigmoid 9 / slope from its inflection.
+    The parameters of a piecewise shape are returned as they are.
     """
     match kind, parameters:
         case "gaussian", [mean, sigma, *_]:

@@ -1,8 +1,9 @@
-"""MATLAB's fuzzy inference systems (`.fis`, and Octave's) as the data of a controller file.
+"""Reads fuzzy inference systems of MATLAB and Octave (`.fis`) as the data of a controller file.
 
-Fuzzy Logic Toolbox, "Save and Load Fuzzy Inference Systems": sections `[System]`, `[Input1]`, `[Output1]`, `[Rules]`; a
-rule is a row of term numbers, `1 -2, 1 (0.5) : 1`, with a minus for `not` and 0 for an unused variable. Octave writes
-hedges after a point: `1.2` is `very` of the first term. If no rule fires, an output is in the middle of its range.
+The sections are `[System]`, `[Input1]`, `[Output1]` and `[Rules]` (Fuzzy Logic Toolbox, "Save and Load Fuzzy Inference
+Systems"). A rule is a row of term numbers, `1 -2, 1 (0.5) : 1`, with a minus for `not` and 0 for an unused variable.
+Octave writes a hedge after the point: `1.2` is `very` before the first term. If no rule fires, an output is in the
+middle of its range.
 """
 
 import re
@@ -70,7 +71,7 @@ _USUAL = {
 
 
 MAX_TERM_NUMBER, MAX_TERM_GAP = 1e6, 10
-"""The greatest number of a term, and the most missing terms of a variable that are listed."""
+"""The limit of a term's number, and the most missing terms of a variable that are reported."""
 
 _TYPES = ("mamdani", "sugeno", "tsukamoto")
 _VARIABLE = Known(read=frozenset(("Name", "Range", "NumMFs", "MF…")))
@@ -86,25 +87,25 @@ KNOWN: FormatTable = {
         meaningless={"AND or OR of a single condition": "a single condition needs no operator"},
     ),
 }
-"""The parts of a MATLAB or Octave system that are carried over, by section; `MF…` means `MF1`, `MF2`, …"""
+"""The parts of each section that are read or meaningless; `MF…` stands for `MF1`, `MF2`, …"""
 
 _HEDGES = {0.5: ("somewhat",), 2.0: ("very",), 4.0: ("very", "very")}
-"""Lumen's hedges by the power of a membership: Octave writes a tenth of the power after the point, `1.2` for `very`."""
+"""Lumen's hedges, by the power of a membership. Octave adds a tenth of the power to the term number: `1.2` is `very`."""
 
 
 class FisLine(NamedTuple):
     """A line `Key=value` of a section, or a rule."""
 
     key: str
-    """The key; empty for a rule."""
+    """The key; empty for a rule or a line without `=`."""
     value: str
-    """The value, or the rule's text."""
+    """The value, or the whole line without a key."""
     place: Place
-    """The place of the line."""
+    """The line's place, without indentation."""
 
 
 class FisSection(NamedTuple):
-    """A section with its number, its lines and its place."""
+    """A section with its lines; `number` is 0 for a heading without a number, and `place` is the heading's."""
 
     kind: str
     number: int
@@ -112,23 +113,26 @@ class FisSection(NamedTuple):
     place: Place
 
     def line(self, key: str) -> FisLine | None:
-        """Return the first line with that key; None if there is none."""
+        """Return the first line with this key, or None if there is none."""
         return next((line for line in self.lines if line.key == key), None)
 
 
 class FisVariable(NamedTuple):
-    """An input or output by Lumen's name; `terms` are Lumen's names in the file's order, empty for those left out."""
+    """An input or output, by Lumen's name."""
 
     name: str
     spec: dict[str, Any]
+    """The variable's data in the controller file."""
     terms: list[str]
+    """Lumen's names of the terms, in the file's order; empty for a term that is left out."""
     shapes: dict[str, tuple[str, list[float]]]
+    """The kind and parameters of each term, by Lumen's name."""
 
 
 def read_fis(file: str, content: bytes, title: str) -> tuple[dict[str, Any], list[Diagnostic]]:
-    """Return the data of a controller file, and findings.
+    """Return the data of a controller file, and findings about lost and changed parts.
 
-    Raises ForeignFileError if it is not a system, or if no output or rule is left.
+    Raises ForeignFileError if the file has no input, or if no output or rule is left.
     """
     findings = ConversionFindings()
     text = text_of(file, content, findings)
@@ -139,7 +143,7 @@ def read_fis(file: str, content: bytes, title: str) -> tuple[dict[str, Any], lis
 
 
 def _sections(file: str, text: str, findings: ConversionFindings) -> Iterator[FisSection]:
-    """Yield the sections in their order; report lines outside them."""
+    """Yield the sections in file order; report lines outside sections and unknown headings."""
     section: FisSection | None = None
     for row, source in enumerate(lines_of(text), 1):
         said = source.strip()
@@ -191,7 +195,7 @@ class _FisReader:
         return self.draft.result()
 
     def known(self, section: FisSection) -> None:
-        """Report the unused keys of a section, and repeated ones."""
+        """Report a section's unused and repeated keys."""
         if section.kind == "rules":
             return
         table, seen = KNOWN[f"[{section.kind.capitalize()}]"], set[str]()
@@ -204,7 +208,7 @@ class _FisReader:
             seen.add(line.key)
 
     def numbered(self, sections: list[FisSection]) -> list[FisSection]:
-        """Return the sections ordered by their numbers, which rules use; report gaps in the numbers."""
+        """Return the sections in the order of their numbers, to which rules refer; report gaps and repetitions."""
         found = sorted(sections, key=lambda section: section.number)
         for number, section in enumerate(found, 1):
             if section.number != number:
@@ -214,7 +218,7 @@ class _FisReader:
         return found
 
     def count(self, section: FisSection, key: str, found: int) -> None:
-        """Report a count in the file that differs from the number found."""
+        """Report the count under `key` if it differs from the number found."""
         line = section.line(key)
         if line and _numbers(line.value) != [float(found)]:
             self.findings.lost(line.place, f"`{key}` is {line.value[:20]}, but the file has {found}: all are read")
@@ -244,8 +248,8 @@ class _FisReader:
                 "mamdani needs a defuzzification method for sets; sugeno and tsukamoto need wtaver or wtsum",
             )
         if weighted:
-            said.pop("implication", None)  # a value is not cut
-            said["aggregation"] = "unbounded-sum"  # every rule counts with its own weight, whatever is set in the file
+            said.pop("implication", None)  # it only cuts sets, not values
+            said["aggregation"] = "unbounded-sum"  # each rule has its own weight, whatever the file sets
         return said
 
     def variable(self, section: FisSection, said: Mapping[str, Any]) -> None:
@@ -325,9 +329,9 @@ class _FisReader:
         return rule
 
     def propositions(self, side: str, numbers: list[float], line: FisLine) -> list[str] | None:
-        """Return `variable is [not] term` for each number that is not 0.
+        """Return `variable is term`, with its hedges, for each number that is not 0.
 
-        If a number has no term, this is reported and the result is None.
+        Report it and return None if a number has no term, or needs a term that can't be derived.
         """
         found = []
         for variable, number in zip(self.order[side], numbers, strict=True):
@@ -350,11 +354,10 @@ class _FisReader:
         return found
 
     def derived(self, variable: FisVariable, term: str, power: float, line: FisLine, *, negated: bool) -> str:
-        """Add a term for a set's complement or a power of its membership, which Lumen's rules lack; return its name.
+        """Add a term for a set's complement or for a power of its membership, and return the new term's name.
 
-        The name is empty if the term is not a set.
-
-        In a conclusion, a hedge in Lumen's rules changes the degree of the rule; in Octave it changes the set.
+        If the term is not a set, report it and return an empty name. Lumen's rules can't express such conclusions: a
+        hedge changes the rule's degree in Lumen, but the set in Octave.
         """
         kind, values = variable.shapes[term]
         formula = set_formula(kind, values)

@@ -1,10 +1,10 @@
-"""The sets of MATLAB and Octave as formulas of x, for deriving a complement or a power."""
+"""Converts MATLAB's and Octave's sets to formulas of x, from which complements and powers are derived."""
 
 from collections.abc import Callable, Mapping
 
 
 def set_formula(kind: str, parameters: list[float]) -> str:
-    """Return the membership of a term at x as a formula of `function`; empty for a term that is a value."""
+    """Return a term's membership at x as a formula for `function`, or empty for a term that is a value."""
     make = _FORMULAS.get(kind)
     return make(*parameters) if make else ""
 
@@ -14,7 +14,7 @@ def _n(value: float) -> str:
 
 
 def _up(a: float, b: float) -> str:
-    """Return a formula that is 0 before a, 1 from b on, and linear between."""
+    """Return a formula that is 0 up to a, 1 from b on, and linear between; without a slope, it steps at b."""
     return f"max(min((x - {_n(a)}) / {_n(b - a)}, 1), 0)" if a < b else f"(x >= {_n(b)} ? 1 : 0)"
 
 

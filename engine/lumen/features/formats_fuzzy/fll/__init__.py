@@ -1,4 +1,4 @@
-"""FuzzyLite Language (FLL): an engine of FuzzyLite as a controller file, and a controller as an engine."""
+"""Import of FuzzyLite Language (FLL), which describes engines, as controller files, and export of controllers."""
 
 from lumen.features.formats_fuzzy.fll.reader import read_fll
 from lumen.features.formats_fuzzy.fll.writer import write_fll

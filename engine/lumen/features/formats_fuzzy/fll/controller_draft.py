@@ -1,4 +1,4 @@
-"""A controller file in progress: another tool's variables, terms and rules, with names that Lumen's rules can use."""
+"""A controller file under construction: another tool's variables, terms and rules, with names valid in Lumen's."""
 
 import re
 from collections.abc import Callable, Collection, Mapping
@@ -34,15 +34,15 @@ MAX_TERM_PARAMETERS = 1_000
 
 NewNames = dict[str, str]
 PlaceOfWord = Callable[[RuleWord], Place]
-"""Returns the place in the file of a word of a rule's text."""
+"""Returns the place of a rule's word in the file."""
 
 
 class ControllerDraft:
     """Collects a controller's data.
 
-    `names` maps the file's names of variables to Lumen's, and `terms` does so for the terms of each variable. Variables
-    of the same name are kept apart: a proposition refers to the first that has its term; in a condition, inputs come
-    before outputs.
+    `names` maps the file's variable names to Lumen's, and `terms` maps the term names of each variable. Variables with
+    the same name stay separate: a proposition refers to the first one that has its term. In a condition, inputs precede
+    outputs.
     """
 
     def __init__(self, file: str, findings: ConversionFindings) -> None:
@@ -57,7 +57,7 @@ class ControllerDraft:
         self._named: dict[int, str] = {}
 
     def variable(self, side: str, name: str, place: Place) -> dict[str, Any]:
-        """Add an input or output; return the dict to which its settings are added."""
+        """Add an input or output, and return its empty data for the caller to fill."""
         known = {*self.sides["inputs"], *self.sides["outputs"]}
         ours = self.fresh(name, known, place)
         self.names.setdefault(name, ours)
@@ -70,11 +70,11 @@ class ControllerDraft:
         return spec
 
     def own_terms(self, spec: dict[str, Any]) -> NewNames:
-        """Return the map from a variable's terms in the file to Lumen's."""
+        """Return the map from the file's names of a variable's terms to Lumen's."""
         return self.terms[self._named[id(spec)]]
 
     def fresh(self, name: str, taken: Collection[str], place: Place) -> str:
-        """Return a similar name that Lumen's rules can use and that is not in `taken`; report it if it differs."""
+        """Return a similar name that is valid in Lumen's rules and not in `taken`; report any difference."""
         stem = _UNFIT.sub("_", normalize("NFC", name)).strip("-") or "unnamed"
         stem = f"{stem}_" if stem.lower() in KEYWORDS else stem
         ours = unused_name(stem, taken.__contains__, len(taken))
@@ -84,13 +84,16 @@ class ControllerDraft:
         return ours
 
     def term(self, variable: str, spec: dict[str, Any], name: str, kind: str, values: Any, place: Place) -> None:
-        """Add a term of a variable: `values` are its parameters in Lumen's order, or its formula."""
+        """Add a variable's term, or report why it is left out.
+
+        `values` are the parameters in Lumen's order, optionally followed by a height, or the formula.
+        """
         if problem := self._problem(kind, values):
             self.findings.lost(place, f"the term `{name}` of `{variable}` is left out: {problem}")
             return
         terms = spec.setdefault("terms", {})
         ours = self.fresh(name, terms, place)
-        self.own_terms(spec)[name] = ours  # FuzzyLite's rules use the last term of a name
+        self.own_terms(spec)[name] = ours  # FuzzyLite's rules use the last term with a name
         height = None
         if kind not in ("function", "constant", "linear", "discrete") and len(values) == len(TERM_PARAMETERS[kind]) + 1:
             *values, height = values
@@ -117,7 +120,7 @@ class ControllerDraft:
         )
 
     def rule(self, text: str, place: Place, spot: PlaceOfWord) -> str:
-        """Return the rule in Lumen's form; if it can't be converted, report why and return an empty text."""
+        """Return the rule's text with Lumen's names; report an invalid rule and return an empty text."""
         try:
             said = parse_rule(text)
         except RuleSyntaxError as error:
@@ -148,13 +151,13 @@ class ControllerDraft:
         return replace(node, variable=variable, term=self.terms[variable].get(node.term, node.term))
 
     def _meant(self, name: str, term: str, *, concluded: bool) -> str:
-        """Return Lumen's name of a proposition's variable; empty if it is unknown."""
+        """Return Lumen's name for a proposition's variable, or empty if it is unknown."""
         found = [] if concluded else self.called["inputs"].get(name, [])
         found = [*found, *self.called["outputs"].get(name, [])]
         return next((ours for ours in found if term in self.terms[ours]), found[0] if found else "")
 
     def _unknown(self, mention: Mention) -> RuleWord | None:
-        """Return the word of a proposition that is an unknown variable or term; None if both are known."""
+        """Return the word in a proposition that is an unknown variable or term; None if both are known."""
         variable, term = mention.variable, mention.term
         name = self._meant(variable.text, term.text if term else "", concluded=mention.concluded)
         if not name:
@@ -162,7 +165,7 @@ class ControllerDraft:
         return term if term and term.text not in self.terms[name] else None
 
     def result(self) -> dict[str, Any]:
-        """Return the data of the file: a single block of rules is at its top level, several have names.
+        """Return the file's data. A single rule block is at the top level; several have names under `blocks`.
 
         Raises ForeignFileError if no output or no rule is left.
         """
@@ -191,7 +194,7 @@ class ControllerDraft:
         return data
 
     def _empty(self, what: str, hint: str) -> ForeignFileError:
-        """Return the error that no controller can be made, placed at the first part that was left out."""
+        """Return the error for an empty controller, placed at the first part that was left out, else at the file."""
         first = next((d for d in self.findings.diagnostics if d.code == LOST), None)
         if first is None:
             return broken(Place(self.file), "not-a-controller", f"nothing is written: {what}", hint)
@@ -199,7 +202,7 @@ class ControllerDraft:
 
 
 def _refused(name: str, shape: Mapping[str, Any], count: int) -> str:
-    """Return the fault that Lumen's loader finds in a term, empty if none.
+    """Return the first problem that Lumen's loader finds in a term, or empty.
 
     A formula is not checked, since its variables may be read later.
     """
@@ -227,5 +230,5 @@ def _shape(kind: str, values: Any) -> Any:
 
 
 def operators(said: Mapping[str, Any], usual: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the operators that differ from the defaults."""
+    """Return the operators that are set and differ from the defaults."""
     return {key: value for key, value in said.items() if value is not None and value != usual.get(key)}

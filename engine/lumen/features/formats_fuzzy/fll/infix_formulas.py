@@ -1,6 +1,7 @@
 """Translates formulas between FuzzyLite's infix notation and Lumen's, whose operators differ.
 
-In FuzzyLite `^` and `**` are powers, `~` and `.-` a minus, `and` and `or` logic, `lt(a, b)` and others comparisons.
+In FuzzyLite, `^` and `**` are powers, `~` and `.-` minus signs, `and` and `or` logical operators, and functions such as
+`lt(a, b)` comparisons.
 """
 
 import re
@@ -20,18 +21,18 @@ _TOKEN = re.compile(
 )
 _COMPARISONS = {"lt": "<", "le": "<=", "eq": "==", "neq": "!=", "ge": ">=", "gt": ">"}
 MAX_FORMULA_LEVELS = 40
-"""The deepest nesting of a formula, by brackets, arguments and signs."""
+"""The deepest nesting of brackets, arguments and signs in a formula."""
 
 
 class Trouble(NamedTuple):
-    """The reason why a formula can't be read, and the index of the character."""
+    """The reason why a formula can't be read, and the character index of the problem."""
 
     message: str
     offset: int
 
 
 def read_formula(text: str, names: Mapping[str, str]) -> str | Trouble:
-    """Return FuzzyLite's formula in Lumen's form, or why it can't be read; `names` maps its variables to Lumen's."""
+    """Translate a FuzzyLite formula to Lumen's, or return the problem in it; `names` maps variables to Lumen's."""
     try:
         return unparse(_FormulaParser(text, names).whole())
     except ExpressionError as error:
@@ -50,7 +51,7 @@ def _tokens(text: str) -> list[Token]:
 
 
 class _FormulaParser(PrattParser):
-    """Parses FuzzyLite's formulas, with the binding powers of FuzzyLite's own table."""
+    """Parses FuzzyLite's formulas, with FuzzyLite's operator precedence."""
 
     max_levels = MAX_FORMULA_LEVELS
 
@@ -122,7 +123,7 @@ class _FormulaParser(PrattParser):
 
 
 def write_formula(text: str, names: Mapping[str, str]) -> tuple[str, bool]:
-    """Return Lumen's formula in FuzzyLite's form, and whether a conditional in it had to be written as a sum."""
+    """Translate a Lumen formula to FuzzyLite's; also return whether it contains a conditional, written as a sum."""
     tree = parse_expression(text)
     writer = _FormulaWriter(names)
     return writer.text(tree), writer.chose

@@ -1,6 +1,6 @@
-"""An engine in FuzzyLite Language as the data of a controller file.
+"""Reads an engine in FuzzyLite Language as the data of a controller file.
 
-FuzzyLite 6 to 8 (fuzzylite.com): an engine is its head, then input variables, output variables and rule blocks.
+In FuzzyLite 6 to 8 (fuzzylite.com), an engine consists of a head, input variables, output variables and rule blocks.
 """
 
 import re
@@ -29,23 +29,23 @@ KNOWN: FormatTable = {
         meaningless={"RuleBlock": "a single block, or one without rules, needs no name"},
     ),
 }
-"""The parts of an engine that are carried over, by kind."""
+"""The keys of each kind of part in an engine: those that are read, lost or meaningless."""
 
 _FLAGS = ("enabled", "lock-range", "lock-previous")
 _USUAL = {"conjunction": "minimum", "disjunction": "maximum", "implication": "minimum"}
 
 
 def read_fll(file: str, content: bytes, title: str) -> tuple[dict[str, Any], list[Diagnostic]]:
-    """Return the data of a controller file, and findings.
+    """Return the data of a controller file, and findings about lost and changed parts.
 
-    Raises ForeignFileError if it is not an engine, or if no output or rule is left.
+    Raises ForeignFileError if the file has no variables, or if no output or rule is left.
     """
     text, findings = decoded(file, content), ConversionFindings()
     return _FllReader(file, findings).engine(text), findings.diagnostics
 
 
 class _FllReader(FllLineReader):
-    """Reads one file of FuzzyLite into a `draft` of the controller."""
+    """Reads one FuzzyLite file into a controller `draft`."""
 
     def __init__(self, file: str, findings: ConversionFindings) -> None:
         super().__init__(file, findings)
@@ -73,7 +73,7 @@ class _FllReader(FllLineReader):
                 self.draft.data["description"] = line.value or self.draft.data["description"]
 
     def known(self, part: FllPart) -> None:
-        """Report keys of a part that nothing reads, repeated ones, and flags that are neither `true` nor `false`."""
+        """Report a part's unknown and repeated keys, and flags that are neither `true` nor `false`."""
         kind = {"Engine": "an engine", "RuleBlock": "a rule block"}.get(part.head.key, "a variable")
         seen = set[str]()
         for line in part.lines:
@@ -227,7 +227,7 @@ _PLAIN_SETTINGS = {"rules": 1, "threshold": 0, "comparison": ">="}
 
 
 def _number(word: str) -> float:
-    """Return the number, NaN if it is invalid."""
+    """Return a word as a number, or NaN if it is invalid."""
     if word in ("inf", "+inf", "-inf"):
         return -inf if word[0] == "-" else inf
     try:

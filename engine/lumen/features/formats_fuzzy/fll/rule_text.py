@@ -1,4 +1,4 @@
-"""Writes the text of a rule from its parts."""
+"""Writes a rule's text from its condition, conclusions and weight."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from typing import assert_never
@@ -16,7 +16,10 @@ def rule_text(
     names: Mapping[str, str] = _NOBODY,
     terms: Mapping[str, Mapping[str, str]] | None = None,
 ) -> str:
-    """Return `if … then … with …`; `names` and `terms` map variables and their terms to the names to write."""
+    """Return `if … then … with …`, without `with` for a weight of 1.
+
+    `names` and `terms` map variables and their terms to the names to write.
+    """
 
     def said(node: Proposition) -> str:
         term = (terms or {}).get(node.variable, _NOBODY).get(node.term, node.term)
@@ -42,7 +45,7 @@ def rule_text(
 
 
 def negations(node: Antecedent) -> Iterator[Negation]:
-    """Yield the `not ( … )` in an antecedent."""
+    """Yield every `not ( … )` in a condition, at any depth."""
     match node:
         case Negation(operand):
             yield node

@@ -1,4 +1,4 @@
-"""A controller as an engine in FuzzyLite Language (FuzzyLite 8)."""
+"""Writes a controller as an engine in FuzzyLite Language (FuzzyLite 8)."""
 
 import re
 from collections.abc import Iterator, Mapping
@@ -23,14 +23,14 @@ _UNFIT = re.compile(r"[^A-Za-z0-9_]+")
 
 
 def write_fll(controller: ControllerDefinition, place: PlaceOfPath) -> tuple[str, list[Diagnostic]]:
-    """Return the engine's text, and findings about what FuzzyLite can't represent."""
+    """Return the engine's text, and findings about parts that FuzzyLite can't represent."""
     writer = _FllWriter(controller, ExportReport(place))
     text = "\n".join(writer.lines()) + "\n"
     return text, writer.report.diagnostics
 
 
 class _FllWriter:
-    """Writes one controller, with names that FuzzyLite can read."""
+    """Writes one controller, with names that are valid in FuzzyLite."""
 
     def __init__(self, controller: ControllerDefinition, report: ExportReport) -> None:
         self.controller, self.report = controller, report
@@ -136,7 +136,7 @@ def _activation(activation: Activation) -> str:
 
 
 def _fresh(names: Mapping[str, object]) -> dict[str, str]:
-    """Return a map from each name to a unique one that FuzzyLite can read."""
+    """Map each name to a unique one that is valid in FuzzyLite."""
     found: dict[str, str] = {}
     for name in names:
         stem = _UNFIT.sub("_", name) or "_"
