@@ -1,4 +1,4 @@
-"""Motions of other tools."""
+"""Import of other tools' motions."""
 
 from lumen.feature import Feature, Importer
 

@@ -1,9 +1,9 @@
-"""Choregraphe's `.xar` behaviours: the joint curves of one of their timelines.
+"""Reads the joint curves of one timeline in a Choregraphe behaviour (`.xar`).
 
 Aldebaran's project format 3: `Timeline fps` > `ActuatorList` > `ActuatorCurve actuator unit` > `Key frame value` >
-`Tangent side abscissaParam ordinateParam interpType`. Degrees, and a hand's opening from 0 to 1; frame / fps is a time.
-Keys before the Start flag (`start_frame`) and after the End flag (`end_frame`, -1 for none) are not played. Box
-libraries have the same form as projects.
+`Tangent side abscissaParam ordinateParam interpType`. A value is an angle in degrees, or a hand's opening from 0 to 1.
+A frame divided by `fps` is a time [s]. Keys before the Start flag (`start_frame`) and after the End flag (`end_frame`,
+-1 for none) are not played. Box libraries have the same form as projects.
 """
 
 from collections.abc import Collection, Iterator
@@ -18,10 +18,10 @@ from lumen.project.formats.known_elements import local, tell_losses
 from lumen.project.formats.xml_elements import XmlElement, parse_xml
 
 MAX_CHOREGRAPHE_ELEMENTS = 1_000_000
-"""The most XML elements of a project."""
+"""The most XML elements in a project."""
 
 DEFAULT_FPS = 25.0
-"""The frames per second of a timeline without a rate."""
+"""The frame rate of a timeline without a valid `fps` [1/s]."""
 
 NAO_HANDS = ("LHand", "RHand")
 ROOTS = ("ChoregrapheProject", "ChoregrapheBox")
@@ -73,32 +73,31 @@ KNOWN: FormatTable = {
     "<Tangent>": Known(frozenset(("side", "abscissaParam", "ordinateParam", "interpType"))),
     "interpType": Known(frozenset(("bezier", "bezier_auto", "linear", "constant"))),
 }
-"""The parts of a `.xar` that are carried over; boxes other than the timeline's are listed as a whole."""
+"""The parts of a `.xar` that are read or meaningless; boxes without the timeline are reported as a whole."""
 
 Timelines = dict[str, XmlElement]
 
 
 class Flags(NamedTuple):
-    """The part of a timeline that is played."""
+    """The range of frames in a timeline that is played, and the frame rate."""
 
     first: float
     """The first frame that is played."""
     last: float
-    """The last frame that is played."""
+    """The last frame that is played; infinite without an End flag."""
     fps: float
-    """The number of frames per second."""
+    """The frame rate [1/s]."""
 
     def time(self, frame: float) -> float:
-        """Return the time of a frame [s]; the first frame is number 1."""
+        """Return a frame's time [s]; the first frame that is played is at 1 / fps."""
         return (frame - self.first + 1) / self.fps
 
 
 def read_choregraphe(file: MotionFile, findings: ConversionFindings) -> JointCurves:
-    """Return the curves of the timeline `file.timeline`, or of the only one if that name is empty.
+    """Return the curves of the timeline `file.timeline`, or of the only timeline if that name is empty.
 
-    Raises ForeignFileError if there is no such timeline, or no behaviour in the file.
-
-    `file.hands` are the robot's hands besides NAO's: their keys are openings.
+    `file.hands` are the robot's hands besides NAO's, whose keys are openings. Raises ForeignFileError if the file is no
+    behaviour, or if the timeline does not exist or must be chosen.
     """
     root = parse_xml(file.name, file.content, most=MAX_CHOREGRAPHE_ELEMENTS)
     if local(root) not in ROOTS:
@@ -131,7 +130,7 @@ def read_choregraphe(file: MotionFile, findings: ConversionFindings) -> JointCur
 
 
 def is_choregraphe_list(content: bytes) -> bool:
-    """Return whether a file is a `.pml`, the file list of a project."""
+    """Return whether a file is a `.pml`, a project's file list."""
     if b"<Package" not in content[:1_000]:
         return False
     try:
@@ -141,7 +140,7 @@ def is_choregraphe_list(content: bytes) -> bool:
 
 
 def choregraphe_list(content: bytes) -> str:
-    """Return why a `.pml` can't be imported, and the files to import instead."""
+    """Return a message: why a `.pml` can't be imported, and the files to import instead."""
     named = [e for e in parse_xml("", content).walk() if local(e) == "BehaviorDescription"]
     files = [f"{e.get('src')}/{e.get('xar', 'behavior.xar')}".strip("/") for e in named]
     instead = (
@@ -153,7 +152,7 @@ def choregraphe_list(content: bytes) -> str:
 
 
 def _tell_around(root: XmlElement, chosen: XmlElement, findings: ConversionFindings) -> None:
-    """Report unknown parts of the timeline and of the boxes around it, and the code that runs with it."""
+    """Report unknown parts of the timeline and its enclosing boxes, and the boxes' scripts."""
     way = _way(root, chosen)
     seen = {id(element) for element in way}
     waiting = [chosen]
@@ -173,7 +172,7 @@ def _tell_around(root: XmlElement, chosen: XmlElement, findings: ConversionFindi
 
 
 def _way(root: XmlElement, wanted: XmlElement) -> list[XmlElement]:
-    """Return the elements from the root to `wanted`."""
+    """Return the elements from the root down to `wanted`, inclusive."""
     above: dict[int, XmlElement] = {}
     for element in root.walk():
         above.update((id(child), element) for child in element.children)
@@ -184,9 +183,9 @@ def _way(root: XmlElement, wanted: XmlElement) -> list[XmlElement]:
 
 
 def _flags(timeline: XmlElement, findings: ConversionFindings) -> Flags:
-    """Return the frames of a timeline that are played, and the timeline's pace; report invalid flags.
+    """Return a timeline's range of played frames and its frame rate; report invalid flags.
 
-    By default all frames from frame 1 on are played.
+    By default, all frames from frame 1 on are played.
     """
     found = {}
     for flag, none in (("start_frame", 1.0), ("end_frame", -1.0)):
@@ -210,7 +209,7 @@ def _flags(timeline: XmlElement, findings: ConversionFindings) -> Flags:
 def _played(
     keys: list[XmlElement], curve: XmlElement, flags: Flags, findings: ConversionFindings
 ) -> Iterator[XmlElement]:
-    """Yield the keys between the flags; the others are reported once per curve."""
+    """Yield the keys between the flags or without a valid frame; report the others once per curve."""
     outside = []
     for key in keys:
         frame = number(key.get("frame"))
@@ -225,7 +224,7 @@ def _played(
 
 
 def _pace(timeline: XmlElement, findings: ConversionFindings) -> float:
-    """Return the frames per second of a timeline."""
+    """Return a timeline's frame rate [1/s]; report an invalid one and return the default."""
     fps = number(timeline.get("fps"))
     if fps is not None and fps > 0:
         return fps
@@ -252,7 +251,7 @@ def _chosen(root: XmlElement, timelines: Timelines, name: str) -> XmlElement:
 
 
 def _timelines(element: XmlElement, box: str = "") -> Iterator[tuple[str, XmlElement]]:
-    """Yield the timelines that move joints, by the names of their boxes; repeated names get a number."""
+    """Yield the enabled timelines that move joints, with their boxes' names; repeated names get a number."""
     found: dict[str, int] = {}
     for name, timeline in _all_timelines(element, box):
         if timeline.get("enable") != "0" and any(local(key) == "Key" for key in timeline.walk()):
@@ -271,7 +270,7 @@ def _all_timelines(element: XmlElement, box: str) -> Iterator[tuple[str, XmlElem
 
 
 def _others(root: XmlElement, chosen: XmlElement, findings: ConversionFindings, *, asked: bool) -> None:
-    """Report the boxes that do something else; if a timeline was requested, the other boxes are not a loss."""
+    """Report the boxes that are left out; if a timeline was requested, boxes outside it are not a loss."""
     inside = {id(element) for element in chosen.walk()}
     for box in root.walk():
         around = any(element is chosen or local(element) == "Box" for element in list(box.walk())[1:])
@@ -312,7 +311,7 @@ def _points(
 
 
 def _factor(curve: XmlElement, findings: ConversionFindings, *, hand: bool) -> float:
-    """Return the factor from a key's value to [rad] or a hand's opening; `unit` does not change it."""
+    """Return the factor from a key's value to [rad] or a hand's opening; report a `unit` that differs."""
     joint, unit, usual = curve.get("actuator"), curve.get("unit"), "1" if hand else "0"
     if unit not in ("", usual):
         meant = "an opening from 0 to 1" if hand else "an angle in degrees"
@@ -322,7 +321,7 @@ def _factor(curve: XmlElement, findings: ConversionFindings, *, hand: bool) -> f
 
 
 def _handle(tangent: XmlElement | None, fps: float, factor: float, findings: ConversionFindings) -> BezierHandle:
-    """Return (dt [s], da [rad]) of a tangent; (0, 0) if it is not a Bezier's."""
+    """Return a Bezier tangent's (dt [s], da [rad]), or (0, 0) for any other; report invalid parameters."""
     if tangent is None or tangent.get("interpType") != "bezier":
         return 0.0, 0.0
     frames, value = (number(tangent.get(name, "0")) for name in ("abscissaParam", "ordinateParam"))
@@ -336,7 +335,7 @@ def _handle(tangent: XmlElement | None, fps: float, factor: float, findings: Con
 
 
 def _under(element: XmlElement, tag: str) -> Iterator[XmlElement]:
-    """Yield the elements of a tag inside an element, except those of the boxes in it."""
+    """Yield the elements with a tag inside an element, except those in nested boxes."""
     waiting = list(reversed(element.children))
     while waiting:
         here = waiting.pop()

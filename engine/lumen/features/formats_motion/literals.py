@@ -1,6 +1,4 @@
-"""Evaluates the literal values in a Python file: numbers, texts, lists, and the usual arithmetic on them. Nothing is
-run.
-"""
+"""Evaluates numbers, strings, lists and simple arithmetic in a Python file, without running the file."""
 
 import ast
 import math
@@ -21,7 +19,7 @@ _FUNCTIONS: Mapping[str, Callable[[float], float]] = {"radians": math.radians, "
 
 
 class NotWrittenOutError(ValueError):
-    """A value can't be known without running the file; `node` is the part that is computed."""
+    """A value can't be determined without running the file; `node` is the computed part."""
 
     def __init__(self, node: ast.AST) -> None:
         super().__init__(written(node)[:60])
@@ -29,7 +27,7 @@ class NotWrittenOutError(ValueError):
 
 
 def written(node: ast.AST) -> str:
-    """Return the node as Python's text; empty for literals that Python can't write, such as thousands of digits."""
+    """Return a node's source text, or empty if Python can't write it, such as a number with thousands of digits."""
     try:
         return ast.unparse(node)
     except (ValueError, RecursionError):
@@ -37,7 +35,7 @@ def written(node: ast.AST) -> str:
 
 
 def value_of(node: ast.expr, names: Mapping[str, Any]) -> Any:
-    """Return the value of a node; `names` are the known variables. Raises NotWrittenOutError if it must be computed."""
+    """Return a node's value; `names` has the known variables. Raises NotWrittenOutError if it must be computed."""
     match node:
         case ast.Constant(value=value) if value is None or isinstance(value, str | int | float):
             return value

@@ -1,9 +1,9 @@
-"""Keyframes in Python for NAOqi, as exported by Choregraphe or written by hand: read, never run.
+"""Reads keyframes from Python for NAOqi, exported by Choregraphe or written by hand, without running it.
 
-NAOqi's ALMotion: `angleInterpolationBezier(names, times, keys)`, each key `[angle, [type, dt, da], [type, dt, da]]`,
-and `angleInterpolation(names, angles, times, isAbsolute)`; times in [s], angles in [rad]. Statements are followed in
-their order, and functions of the file at their calls. If nothing is called, each function that moves joints, or
-returns the lists for it, is a separate motion.
+ALMotion's calls are `angleInterpolationBezier(names, times, keys)`, with keys `[angle, [type, dt, da], [type, dt, da]]`,
+and `angleInterpolation(names, angles, times, isAbsolute)`. Times are in [s], angles in [rad]. Statements are followed
+in order, and the file's functions at their calls. If none is called, each function that moves joints, or returns the
+lists for a motion, is a separate motion.
 """
 
 import ast
@@ -17,19 +17,19 @@ from lumen.project.formats.conversion_findings import ConversionFindings, broken
 from lumen.project.formats.joint_curves import JointCurves, MotionFile
 
 MAX_ROUNDS = 1_000
-"""The most rounds of a loop that are followed."""
+"""The most iterations of a loop that are followed."""
 
 _OLD = (
     (re.compile(r"^([ \t]*except[ \t]+[\w.]+),[ \t]*(\w+)[ \t]*:", re.MULTILINE), r"\1 as \2:"),
     (re.compile(r"^([ \t]*)print\b(?![ \t]*\().*", re.MULTILINE), r"\1pass"),
 )
-"""Constructs of Python 2, with their form in Python 3."""
+"""Patterns for constructs of Python 2, with their replacements for Python 3."""
 
 
 def read_naoqi(file: MotionFile, findings: ConversionFindings) -> JointCurves:
     """Return the curves that the file, or its function `file.timeline`, passes to ALMotion.
 
-    Raises ForeignFileError if there are none.
+    Raises ForeignFileError if there are none, or if the script is invalid, ambiguous or too long.
     """
     tree = _tree(file.name, decoded(file.name, file.content))
     for rounds in (MAX_ROUNDS, 0):
@@ -47,7 +47,7 @@ def read_naoqi(file: MotionFile, findings: ConversionFindings) -> JointCurves:
 
 
 def _read(file: str, tree: ast.Module, findings: ConversionFindings, timeline: str, rounds: int) -> JointCurves:
-    """Return the curves, with at most `rounds` rounds of each loop."""
+    """Return the curves; a loop with more than `rounds` iterations is followed once."""
     own = OwnFunctions(tree)
     reading = ScriptReading(file, findings, tree, own, rounds)
     function = _chosen(file, tree, own, findings, timeline)
@@ -72,7 +72,10 @@ def _read(file: str, tree: ast.Module, findings: ConversionFindings, timeline: s
 def _chosen(
     file: str, tree: ast.Module, own: OwnFunctions, findings: ConversionFindings, name: str
 ) -> FunctionNode | None:
-    """Return the function that contains the motion; None for the statements that run with the file."""
+    """Return the function that contains the motion, or None if the module's own statements do.
+
+    Raises ForeignFileError if the function does not exist or must be chosen.
+    """
     gestures = {name: function for name, function in own.all.items() if own.is_gesture(function.body)}
     if name:
         if name not in gestures:
@@ -97,7 +100,10 @@ def _chosen(
 
 
 def _tree(file: str, text: str) -> ast.Module:
-    """Return the file's syntax tree; two statements of Python 2 that every export has are accepted."""
+    """Return the file's syntax tree; Python 2's `print` and `except` are accepted, since exports contain them.
+
+    Raises ForeignFileError if the file is not valid Python otherwise.
+    """
     for pattern, now in _OLD:
         text = pattern.sub(now, text)
     try:

@@ -1,6 +1,6 @@
-"""The calls of a Python script for NAOqi: those that move joints, are left out, or don't change a motion.
+"""The calls in a NAOqi script: those that move joints, are left out, or don't change a motion.
 
-The order of joints in a chain is ALMotion's ("Joints", "Effectors & Chains" of NAOqi's documentation).
+The joints of a chain are in ALMotion's order ("Joints", "Effectors & Chains" in NAOqi's documentation).
 """
 
 from collections.abc import Mapping
@@ -77,10 +77,10 @@ KNOWN: FormatTable = {
     "call": CALLS,
     "handle": Known(frozenset(("type", "time", "angle")), meaningless={"after the last key": "no movement follows"}),
 }
-"""The parts of a script that are carried over: calls, by name alone (`get…` means all that begin with `get`), and the
-handles of a key, `[3, -0.1, 0]`."""
+"""The parts of a script that are recognized: calls by their last name (`get…` stands for all that begin with `get`),
+and a key's handles, such as `[3, -0.1, 0]`."""
 
 
 def is_reading(name: str) -> bool:
-    """Return whether a call only reads something, judged by its name: `getAngles`, `isRunning`."""
+    """Return whether a call's name, such as `getAngles` or `isRunning`, shows that it only reads a value."""
     return any(name.startswith(word) and name[len(word) : len(word) + 1].isupper() for word in ("get", "is"))

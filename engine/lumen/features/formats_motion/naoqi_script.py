@@ -1,4 +1,4 @@
-"""The statements of a script for NAOqi, followed in their order, and the curves of its calls of ALMotion."""
+"""Follows a NAOqi script's statements in order, and collects the curves of its calls to ALMotion."""
 
 import ast
 from collections.abc import Iterator, Mapping
@@ -26,15 +26,14 @@ BEZIER, LINEAR = 3, 1
 
 
 MAX_STEPS = 20_000
-"""The most statements that are followed: functions that call each other might never end."""
+"""The most statements that are followed, since functions can call each other very often."""
 
 MAX_PARTS = 1_000_000
-"""The most syntax nodes of these statements beyond the file's own: a long list in a loop costs as much in each round.
-"""
+"""The most syntax nodes that are followed beyond the file's own; a long list in a loop counts in each iteration."""
 
 
 class TooManyStepsError(Exception):
-    """The script takes more than MAX_STEPS steps, or has too many parts; reading it stopped at `place`."""
+    """A script takes more than MAX_STEPS steps or has too many parts; reading stopped at `place`."""
 
     def __init__(self, place: Place) -> None:
         super().__init__(str(place))
@@ -42,7 +41,7 @@ class TooManyStepsError(Exception):
 
 
 class ScriptReading:
-    """Follows a script; keeps its variables so far, and the curves of its calls."""
+    """Follows a script, with its current variables and the curves of its calls so far."""
 
     def __init__(
         self, file: str, findings: ConversionFindings, tree: ast.Module, own: OwnFunctions, rounds: int
@@ -67,7 +66,7 @@ class ScriptReading:
         self.called = False
 
     def run(self, body: list[ast.stmt], around: Branch = Branch.ALWAYS) -> Any:
-        """Follow statements in their order; return the value of their `return`, None if it can't be computed.
+        """Follow statements in order; return the value of their `return`, None if it is missing or must be computed.
 
         Raises TooManyStepsError if they take too many steps.
         """
@@ -87,13 +86,16 @@ class ScriptReading:
         return None
 
     def _size(self, statement: ast.stmt) -> int:
-        """Return the number of nodes of a statement."""
+        """Return the number of syntax nodes in a statement."""
         if id(statement) not in self.sizes:
             self.sizes[id(statement)] = sum(1 for _ in ast.walk(statement))
         return self.sizes[id(statement)]
 
     def _items(self, loop: ast.For) -> list[ast.expr] | None:
-        """Return the values of a loop's variable, one per round; None if they are not literal, or too many."""
+        """Return the values of a loop's variable, one per iteration.
+
+        Return None if they are not literal or too many, or if an iteration can end early.
+        """
         if has_jumps(loop):
             return None
         rounds: list[ast.expr]
@@ -118,7 +120,7 @@ class ScriptReading:
         return rounds
 
     def enter(self, function: FunctionNode, given: Mapping[str, Any], around: Branch = Branch.ALWAYS) -> Any:
-        """Follow a function with its own variables; return its result."""
+        """Follow a function with its own variables; return its result, or None if it is unknown."""
         outer, shared = self.values, self.shared
         self.values, self.shared = {**self.globals, **self._defaults(function), **given}, set()
         self.entered.append(function.name)
@@ -129,7 +131,7 @@ class ScriptReading:
         return result
 
     def _defaults(self, function: FunctionNode) -> dict[str, Any]:
-        """Return the default values of a function's parameters; one without a default is None and hides a global."""
+        """Return the defaults of a function's parameters; a parameter without one is None and hides a global."""
         given = function.args
         names = [argument.arg for argument in (*given.posonlyargs, *given.args)]
         pairs = [*zip(reversed(names), reversed(given.defaults), strict=False)]
@@ -138,7 +140,7 @@ class ScriptReading:
         return found
 
     def take(self, statement: ast.stmt, branch: Branch) -> None:
-        """Follow a statement: its calls, and assignments of literals; note uncertain changes of variables."""
+        """Follow a statement's calls and literal assignments; record uncertain changes of variables."""
         if isinstance(statement, ast.Global):
             self.shared.update(statement.names)
         changed = changed_names(statement)
@@ -156,7 +158,7 @@ class ScriptReading:
             self.changes.append((changed, statement, branch if followed else Branch.LOOP))
 
     def _called(self, call: ast.Call, statement: ast.stmt, branch: Branch, *, told: bool) -> None:
-        """Follow a call, or report that it is left out; `told` means that it is an argument of a followed call."""
+        """Follow a call, or report that it is left out; `told` is True for an argument of a followed call."""
         name, shown = attribute(call), written(call).partition("\n")[0][:60]
         if name in ALMOTION_CALLS and self.own.called(call) is None:
             self.used.update(name for argument in call.args for name in _names(argument))
@@ -172,7 +174,7 @@ class ScriptReading:
                 self.findings.lost(self._place(call), f"`{shown}` is left out", hint)
 
     def _own(self, call: ast.Call, function: FunctionNode, statement: ast.stmt, branch: Branch) -> None:
-        """Follow a function of the file with its arguments."""
+        """Follow a call of the file's `function`, and store its result; report a recursive call."""
         if function.name in self.entered:
             self.findings.lost(self._place(call), f"`{function.name}` calls itself: it is imported once")
             return
@@ -192,7 +194,7 @@ class ScriptReading:
                 self.changes.append((frozenset(outside), statement, how))
 
     def _pause(self, call: ast.Call, name: str, branch: Branch) -> None:
-        """Delay all later movements by a pause, or until all movements so far have ended."""
+        """Delay all later movements by a pause, or until all earlier ones have ended; report uncertain pauses."""
         if name == WAIT:
             self.begin = max(self.begin, self.end)
             return
@@ -216,7 +218,7 @@ class ScriptReading:
         return all(part == 1 for part in (stiffness if isinstance(stiffness, list) else [stiffness]))
 
     def _value(self, node: ast.expr) -> Any:
-        """Return the value of a literal expression, or of a call that was followed; else None."""
+        """Return the value of a literal expression or of a followed call, else None."""
         if id(node) in self.returned:
             return self.returned[id(node)]
         try:
@@ -225,7 +227,7 @@ class ScriptReading:
             return None
 
     def tell_changes(self) -> None:
-        """Report what changes a variable of a call in a way that is unknown without running the file."""
+        """Report uncertain changes of variables that ALMotion's calls use."""
         used, waiting = set(), list(self.used)
         while waiting:
             name = waiting.pop()
@@ -245,7 +247,7 @@ class ScriptReading:
                     self.findings.lost(self._place(statement), message, "write the numbers as literals")
 
     def _followed(self, statement: ast.stmt) -> bool:
-        """Follow an assignment or an `append` of literals; return True if the statement is one of these."""
+        """Follow an assignment or an `append`; return False if the statement is something else or must be computed."""
         match statement:
             case ast.Assign(targets=targets, value=value) if all(isinstance(t, ast.Name) for t in targets):
                 for target in targets:
@@ -273,7 +275,7 @@ class ScriptReading:
         return False
 
     def play(self, node: ast.AST, names: Any, times: Any, keys: Any) -> None:
-        """Add the curves of one call, which begins when the calls before it have ended."""
+        """Add a call's curves, which begin when earlier calls that block have ended; report mismatched lists."""
         self.called = True
         end = begin = self.begin
         joints = [joint for name in (names if isinstance(names, list) else [names]) for joint in _joints(name)]
@@ -361,10 +363,10 @@ def _joints(name: Any) -> tuple[Any, ...]:
 
 
 def _rows(times: Any, keys: Any, joints: int) -> list[tuple[list[Any], list[Any]]] | None:
-    """Return the times and keys of each joint, given in any form that ALMotion accepts; None if they do not match.
+    """Return each joint's times and keys from any form that ALMotion accepts; None if they do not match.
 
-    The forms are: one time for all, one time or angle for each joint, or a list for each of them; for a single joint,
-    its own list.
+    The forms are one time for all joints, one time or angle per joint, or one list per joint. A single joint can have a
+    flat list.
     """
     if times == [] or keys == []:
         return None
@@ -380,7 +382,7 @@ def _rows(times: Any, keys: Any, joints: int) -> list[tuple[list[Any], list[Any]
 
 
 def _is_posted(node: ast.AST) -> bool:
-    """Return whether the script continues while the robot moves: `motion.post.…`, or qi's `_async=True`."""
+    """Return whether the script continues during the movement, as for `motion.post.…` or qi's `_async=True`."""
     if not isinstance(node, ast.Call):
         return False
     return ".post." in written(node.func) or any(
@@ -389,14 +391,14 @@ def _is_posted(node: ast.AST) -> bool:
 
 
 def _handle(handle: Any) -> tuple[int, BezierHandle]:
-    """Return the type and (dt [s], da [rad]) of a handle."""
+    """Return a handle's type, LINEAR if it is invalid, and (dt [s], da [rad]), (0, 0) unless it is BEZIER."""
     if isinstance(handle, list) and len(handle) == 3 and all(_is_number(part) for part in handle):
         return int(handle[0]), ((float(handle[1]), float(handle[2])) if handle[0] == BEZIER else (0.0, 0.0))
     return LINEAR, (0.0, 0.0)
 
 
 def _names(node: ast.AST) -> set[str]:
-    """Return the variables in an expression."""
+    """Return the names of the variables in an expression."""
     return {inner.id for inner in ast.walk(node) if isinstance(inner, ast.Name)}
 
 

@@ -1,4 +1,4 @@
-"""The statements of a Python file in their order, each marked if it may not run exactly once."""
+"""Finds a Python file's statements in order, marked if they may not run exactly once, and its functions."""
 
 import ast
 import re
@@ -10,7 +10,7 @@ from lumen.features.formats_motion.naoqi_calls import ALMOTION_CALLS
 
 
 class Branch(Enum):
-    """The kind of block that a statement is in: `ALWAYS` runs exactly once, as far as the text shows."""
+    """The kind of block that contains a statement; `ALWAYS` runs exactly once, as far as the source shows."""
 
     ALWAYS = "always"
     IF = "if"
@@ -21,9 +21,9 @@ class Branch(Enum):
 def statements(
     body: list[ast.stmt], around: Branch, items: Callable[[ast.For], list[ast.expr] | None]
 ) -> Iterator[tuple[ast.stmt, Branch]]:
-    """Yield the simple statements, whole functions and classes, and the expressions that open compound statements.
+    """Yield simple statements, whole functions and classes, and the head expressions of compound statements.
 
-    An exception handler counts as an `else`. A loop has as many rounds as `items` finds values for its variable.
+    An exception handler counts as an `else`. A `for` loop is repeated for each value that `items` returns.
     """
     waiting = [(statement, around) for statement in reversed(body)]
     while waiting:
@@ -60,17 +60,17 @@ def statements(
 
 
 def has_jumps(loop: ast.For) -> bool:
-    """Return whether a round of a loop may end early."""
+    """Return whether an iteration of a loop can end early."""
     return any(isinstance(node, ast.Break | ast.Continue | ast.Return) for node in _inner(loop.body))
 
 
 def _within(around: Branch, branch: Branch) -> Branch:
-    """Return the branch of a nested statement: if the outer one is skipped or repeated, so is the inner one."""
+    """Return a nested statement's branch: if the outer statement is an `else` or in a loop, so is the inner one."""
     return branch if around in (Branch.ALWAYS, Branch.IF) else around
 
 
 def _is_main(test: ast.expr) -> bool:
-    """Return whether an `if` only tests whether the file is run as a program, or is always true."""
+    """Return whether an `if` is always true, or only tests whether the file runs as a program."""
     match test:
         case (
             ast.Compare(left=ast.Name(id="__name__"), ops=[ast.Eq()], comparators=[ast.Constant(value="__main__")])
@@ -84,7 +84,7 @@ FunctionNode = ast.FunctionDef | ast.AsyncFunctionDef
 
 
 class OwnFunctions:
-    """The functions and methods that a file defines, by name; the last one of a name counts."""
+    """The functions and methods that a file defines, by name; the last definition of a name is used."""
 
     def __init__(self, tree: ast.Module) -> None:
         self.plain: dict[str, FunctionNode] = {}
@@ -102,7 +102,7 @@ class OwnFunctions:
         self.classes = {node.name for node in classes}
 
     def called(self, call: ast.Call) -> FunctionNode | None:
-        """Return the function of the file that a call refers to, None if it calls no such function."""
+        """Return the file's function that a call refers to, or None if it refers to none."""
         match call.func:
             case ast.Name(id=name):
                 return self.plain.get(name)
@@ -123,17 +123,17 @@ class OwnFunctions:
         return found
 
     def is_gesture(self, body: list[ast.stmt]) -> bool:
-        """Return whether statements, or the functions that they call, move joints or return the lists of a motion."""
+        """Return whether statements, or functions that they call, move joints, or statements fill a motion's lists."""
         whole = [body, *(self.all[name].body for name in self.reached(body) if name in self.all)]
         return any(_moves(part) for part in whole) or lists_of(body) is not None
 
 
 _OF_NAOQI = frozenset((*ALMOTION_CALLS, "say", "move", "rest", "play", "sleep", "wait"))
-"""Names that refer to NAOqi, unless `self` is called."""
+"""Names of methods that are NAOqi's, unless called on `self`."""
 
 
 class NamedLists(NamedTuple):
-    """The variables that hold the names, times and keys of a motion."""
+    """The variables that contain a motion's names, times and keys."""
 
     names: str
     times: str
@@ -144,7 +144,7 @@ USUAL_LISTS = NamedLists("names", "times", "keys")
 
 
 def _inner(body: list[ast.stmt]) -> Iterator[ast.AST]:
-    """Yield the nodes of statements, except those of nested functions and classes."""
+    """Yield the syntax nodes in statements, except those in nested functions and classes."""
     waiting: list[ast.AST] = list(body)
     while waiting:
         node = waiting.pop()
@@ -158,9 +158,9 @@ def _moves(body: list[ast.stmt]) -> bool:
 
 
 def lists_of(body: list[ast.stmt]) -> NamedLists | None:
-    """Return the lists of a motion that statements fill; without such lists, None.
+    """Return the variables for a motion's lists that statements set; None if there are none.
 
-    They are those of Choregraphe's export, or three lists that are returned.
+    They have the names of Choregraphe's export, or are returned as a tuple of three.
     """
     nodes = list(_inner(body))
     if set(USUAL_LISTS) <= {n.id for n in nodes if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Store)}:
@@ -176,7 +176,7 @@ def lists_of(body: list[ast.stmt]) -> NamedLists | None:
 
 
 def attribute(call: ast.Call) -> str:
-    """Return the last part of a call's name: `move` of `motion.move()`."""
+    """Return the last part of a called name, such as `move` in `motion.move()`; empty without a name."""
     match call.func:
         case ast.Name(id=name) | ast.Attribute(attr=name):
             return name
@@ -187,7 +187,7 @@ MUTATING_METHODS = frozenset(("append", "extend", "insert", "pop", "remove", "so
 
 
 def changed_names(statement: ast.stmt) -> frozenset[str]:
-    """Return the variables that a statement sets or changes, also within lists."""
+    """Return the variables that a statement sets, deletes or changes, including changes of their items."""
     found: set[str] = set()
     for node in ast.walk(statement):
         match node:
@@ -201,7 +201,7 @@ def changed_names(statement: ast.stmt) -> frozenset[str]:
 
 
 def _targets(target: ast.expr) -> Iterator[str]:
-    """Yield the variables in a target of an assignment: `a` and `b` in `a, b[0].c`."""
+    """Yield the variables in an assignment's target, such as `a` and `b` in `a, b[0].c`."""
     waiting = [target]
     while waiting:
         match waiting.pop():

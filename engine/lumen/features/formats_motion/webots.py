@@ -1,11 +1,11 @@
-"""Webots' `.motion` files: a line of joint names, then a pose per line.
+"""Reads Webots' `.motion` files, which contain a line of joint names, then a pose per line.
 
-Webots' reference manual, "Motion": `#WEBOTS_MOTION,V1.0,JOINT,…`, then `MM:SS:mmm,NAME,ANGLE,…` in [rad], with `*` for
-a joint that does not move. Teams of RoboCup's 3D league write V1.1, which Webots does not support.
+V1.0 (Webots' reference manual, "Motion") is `#WEBOTS_MOTION,V1.0,JOINT,…`, then `MM:SS:mmm,NAME,ANGLE,…` in [rad], with
+`*` for a joint that does not move.
 
-V1.1: `#WEBOTS_MOTION,V1.1`, then in the same or the second line the joints' names joined by `%`, then a pose per line:
-`play%ANGLE%…%DURATION`, in [rad], with the time to reach the pose [s]. There is no specification: this describes
-existing files.
+V1.1 is written by teams of RoboCup's 3D league, and not supported by Webots. After `#WEBOTS_MOTION,V1.1`, the joint
+names follow on the same or the second line, joined by `%`. A pose is `play%ANGLE%…%DURATION`, with angles in [rad] and
+the time to reach it in [s]. There is no specification: this describes existing files.
 """
 
 import re
@@ -22,7 +22,7 @@ Cell = tuple[str, Place]
 
 
 def cells_of(file: str, text: str, separator: str) -> Iterator[list[Cell]]:
-    """Yield the cells of every line that is not empty, without surrounding blanks."""
+    """Yield the cells of each line that is not empty, without surrounding whitespace."""
     for i, line in enumerate(lines_of(text), 1):
         if line.strip():
             yield list(_cells(file, i, line, separator))
@@ -42,9 +42,9 @@ POSE = "play"
 
 
 def read_soccer(file: str, text: str, findings: ConversionFindings) -> JointCurves:
-    """Return the curves of a motion, linear between its poses.
+    """Return the curves of a V1.1 motion, linear between poses; report invalid lines.
 
-    Raises ForeignFileError if it has no joint, or one twice.
+    Raises ForeignFileError if the motion has no joint or repeats one.
     """
     (first, *rest), *lines = cells_of(file, text, "%")
     behind = first[0].partition(SOCCER_VERSION)[2].lstrip(", ")
@@ -74,7 +74,7 @@ def read_soccer(file: str, text: str, findings: ConversionFindings) -> JointCurv
 
 
 def _takes(cells: list[Cell], joints: int) -> float | None:
-    """Return how long the movement to the pose of a line takes [s]; None if the line is not a pose."""
+    """Return the duration of the movement to a line's pose [s], or None if the line is not a valid pose."""
     if cells[0][0] != POSE or len(cells) != joints + 2:
         return None
     takes = number(cells[-1][0])
@@ -82,7 +82,7 @@ def _takes(cells: list[Cell], joints: int) -> float | None:
 
 
 FIRST_CELL = "#WEBOTS_MOTION"
-"""The first word of every file."""
+"""The first cell of every file."""
 
 WEBOTS_VERSION = "V1.0"
 
@@ -90,14 +90,14 @@ KNOWN: FormatTable = {
     "first line": Known(frozenset(("#WEBOTS_MOTION", "V1.0", "V1.1", "joint"))),
     "pose": Known(frozenset(("time", "angle", "*")), lost={"name": "keyframes in Lumen have no names"}),
 }
-"""The parts of a `.motion` that are carried over: the cells of its lines, by kind."""
+"""The cells of a `.motion` that are read or lost, by kind of line."""
 
 _TIME = re.compile(r"(?:(?:(\d{1,6}):)?(\d{1,6}):)?(\d{1,9})", re.ASCII)
 _PLAIN_NAME = re.compile(r"pose\s*_?\d*", re.IGNORECASE)
 
 
 def read_webots(file: MotionFile, findings: ConversionFindings) -> JointCurves:
-    """Return the curves of a motion, linear between its poses. Raises ForeignFileError if it is not a motion."""
+    """Return a motion's curves, linear between poses. Raises ForeignFileError if the file is not a motion."""
     text = decoded(file.name, file.content)
     lines = list(cells_of(file.name, text, ","))
     if lines and [word for word, _ in lines[0][:2]] == [FIRST_CELL, SOCCER_VERSION]:
@@ -126,9 +126,9 @@ def read_webots(file: MotionFile, findings: ConversionFindings) -> JointCurves:
 
 
 def _joints(file: str, lines: list[list[Cell]]) -> list[Cell]:
-    """Remove the joints from the front of the lines and return them.
+    """Remove the heading from the lines, and return its joints; some tools write their names into the second line.
 
-    Some tools write the joints' names into the second line.
+    Raises ForeignFileError if the heading is invalid.
     """
     head = lines.pop(0) if lines else []
     if not head or head[0][0] != FIRST_CELL:
@@ -152,9 +152,9 @@ def _joints(file: str, lines: list[list[Cell]]) -> list[Cell]:
 
 
 def _time(text: str) -> float | None:
-    """Return the time of a pose [s] as Webots reads it; None for any other text.
+    """Return a pose's time [s] as Webots reads it; None for any other text.
 
-    Minutes and seconds may be missing, and milliseconds have up to nine digits.
+    Minutes and seconds can be missing, and milliseconds have up to nine digits.
     """
     match = _TIME.fullmatch(text)
     return int(match[1] or 0) * 60.0 + int(match[2] or 0) + int(match[3]) / 1000.0 if match else None

@@ -1,4 +1,4 @@
-"""Models of robots from other tools."""
+"""Import of other tools' robot models."""
 
 from lumen.feature import Feature, Importer
 

@@ -1,4 +1,4 @@
-"""The text of a body file made from a robot's model; guesses are marked."""
+"""Writes a robot's model as the text of a body file, in which guesses are marked."""
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
@@ -12,17 +12,17 @@ from lumen.project.formats.yaml_document import SCHEMA_COMMENT
 GUESSED = "  # guessed"
 WIDTH, HEIGHT = 320, 240
 SPEED, TURN = 0.5, 1.0
-"""The speeds of a base on wheels that are written as a guess [m/s, rad/s]."""
+"""The guessed speeds of a base on wheels [m/s, rad/s]."""
 GIVE = 0.1
-"""The distance from its goal [rad] at which an added servo gives its full torque."""
+"""The distance from the goal [rad] at which an added servo gives its full torque."""
 CIRCLE = pi
-"""The range to both sides [rad] of a joint that turns endlessly."""
+"""The range in each direction [rad] of a joint without limits."""
 
 
 def body_text(model: RobotModel, roles: GuessedRoles, joints: Sequence[ModelJoint], title: str, mjcf: str) -> str:
     """Return the text of a body file with these `joints` of the model.
 
-    `title` is its name if the model has none, `mjcf` the model's file, relative to the body file.
+    `title` is the robot's name if the model has none. `mjcf` is the model's path, relative to the body file.
     """
     return SCHEMA_COMMENT.format(kind="body") + "".join(
         f"{line}\n" for line in _lines(model, roles, joints, title, mjcf)
@@ -97,7 +97,7 @@ def _roles(model: RobotModel, roles: GuessedRoles) -> Iterator[str]:
 
 
 def _given(roles: GuessedRoles, prefix: str, names: Sequence[str]) -> dict[str, str]:
-    """Return the roles below a path in their YAML form."""
+    """Return the joints for those of the roles under `prefix` that have one, as YAML."""
     found = {name: path for name in names if (path := f"{prefix}.{name}") in roles.joints}
     return {
         name: f"{{joint: {roles.joints[path]}, reversed: true}}" if path in roles.reversed else roles.joints[path]
@@ -124,7 +124,7 @@ def _flow(words: Mapping[str, str]) -> str:
 
 
 def _quoted(text: str) -> str:
-    """Return a name in its YAML form, quoted if necessary."""
+    """Return a name as YAML, quoted if necessary."""
     plain = re.sub(r"[-_. ]", "", text).isalnum() and text.isascii() and text[0].isalpha()
     if (
         plain

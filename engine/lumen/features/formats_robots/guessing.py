@@ -1,4 +1,4 @@
-"""Guesses the roles of a model's joints from names and the directions of axes."""
+"""Guesses the roles of a model's joints from their names and axes."""
 
 import re
 from collections.abc import Mapping, Sequence
@@ -33,7 +33,7 @@ class GuessedRoles:
     joints: dict[str, str] = field(default_factory=dict)
     """The joint of each role, by the role's path."""
     reversed: set[str] = field(default_factory=set)
-    """The roles whose joint's angle grows in the opposite direction."""
+    """The roles whose joints turn in the opposite direction."""
     wheels: dict[str, str] = field(default_factory=dict)
     """The wheel joint of each side."""
     soles: dict[str, str] = field(default_factory=dict)
@@ -48,11 +48,11 @@ class GuessedRoles:
     biped: bool = False
     """Whether the robot can walk on two legs."""
     limbs: dict[str, str] = field(default_factory=dict)
-    """The part of the body that moves each joint: head, arms or legs."""
+    """The part of the body to which each joint belongs: head, arms or legs."""
 
 
 def guess_roles(model: RobotModel, findings: ConversionFindings) -> GuessedRoles:
-    """Return the roles that names and axes reveal; report what prevents walking, or gestures of the arms."""
+    """Return the roles guessed from names and axes; report legs that can't walk and arms without roles."""
     return _Guesser(model, findings).guess()
 
 
@@ -62,7 +62,7 @@ class _Guesser:
         self.known = [(joint, *_place_of(joint.name)) for joint in model.joints]
 
     def guess(self) -> GuessedRoles:
-        """Return the guessed roles."""
+        """Guess all roles, and return them."""
         roles, model = self.roles, self.model
         for joint, side, limb, turn in self.known:
             if joint.wheel or (limb == "wheel" and joint.low is None):
@@ -94,7 +94,7 @@ class _Guesser:
         return roles
 
     def role(self, joint: ModelJoint, side: str, limb: str, turn: str) -> None:
-        """Give a joint its role, unless another joint has it."""
+        """Assign a joint to the role in its name, unless another joint has it; an axis replaces a missing turn."""
         turn = turn or _dominant(joint)
         path = {
             "head": f"head.{turn}",
@@ -106,14 +106,14 @@ class _Guesser:
         self.give(path, joint, joint.axis[_AXES[turn]] < -0.1)
 
     def give(self, path: str, joint: ModelJoint, backwards: bool) -> None:
-        """Set the joint of a role unless the role is taken."""
+        """Set a role's joint, unless the path is empty or the role already has a joint."""
         if path and path not in self.roles.joints:
             self.roles.joints[path] = joint.name
             if backwards:
                 self.roles.reversed.add(path)
 
     def arm(self, side: str) -> None:
-        """Guess the roles of an arm that points ahead at zero; report an arm that does not."""
+        """Guess an arm's roles if it points straight ahead with all joints at zero; report any other arm."""
         joints = {
             k: [(j, t) for j, s, limb, t in self.known if s == side and limb == k]
             for k in ("shoulder", "elbow", "wrist")
@@ -142,7 +142,7 @@ class _Guesser:
                 self.give(f"arms.{side}.wrist-yaw", joint, joint.axis[0] < 0)
 
     def soles(self) -> dict[str, str]:
-        """Return the sites below both feet, found by name; empty unless both are there."""
+        """Return the sites below both feet, found by name; empty unless both exist."""
         found: dict[str, str] = {}
         for site in self.model.sites:
             side, words = _side(_tokens(site)), site.lower()
@@ -152,7 +152,7 @@ class _Guesser:
         return found if len(found) == len(SIDES) else {}
 
     def walks(self) -> bool:
-        """Return whether the robot has all that walking needs; report what two legs lack."""
+        """Return whether the robot has all parts that walking needs; report those that two legs lack."""
         has = {side: [name for name in LEG_ROLES if f"legs.{side}.{name}" in self.roles.joints] for side in SIDES}
         if not all(has.values()):
             return False
@@ -170,7 +170,7 @@ class _Guesser:
 
 
 def _dominant(joint: ModelJoint) -> str:
-    """Return the kind of turn about the joint's axis, with all joints at zero."""
+    """Return the turn (yaw, pitch or roll) that is closest to the joint's axis, with all joints at zero."""
     return max(_AXES, key=lambda turn: abs(joint.axis[_AXES[turn]]))
 
 
@@ -196,7 +196,7 @@ def _place_of(name: str) -> tuple[str, str, str]:
 
 
 def _limb(token: str) -> str:
-    """Return the limb whose word the token is, or begins with if the word is long enough; empty for none."""
+    """Return the limb for a token that is one of its words, or begins with one of at least four letters; else empty."""
     for limb, words in _WORDS.items():
         if token in words or any(len(word) > 3 and token.startswith(word) for word in words):
             return limb

@@ -1,4 +1,4 @@
-"""`lumen import` of a robot: URDF or MJCF as a body file, and URDF also as the MJCF that belongs to it."""
+"""`lumen import` of a robot: convert URDF or MJCF to a body file, and URDF also to the MJCF that it needs."""
 
 import re
 from pathlib import Path
@@ -14,9 +14,10 @@ from lumen.project.formats.xml_elements import XmlElement, parse_xml
 def robot_body(
     path: Path, content: bytes, output: Path | None, title: str
 ) -> tuple[str, list[Diagnostic], dict[Path, bytes]]:
-    """Return the body file's text, the findings, and further files by path.
+    """Return the body file's text, the findings, and additional files by path.
 
-    A URDF becomes MJCF if there is an `output` and MuJoCo is installed. Raises ForeignFileError if it is not a robot.
+    A URDF is also converted to MJCF if there is an `output` and MuJoCo is installed. Raises ForeignFileError if the
+    file is not a robot.
     """
     urdf = parse_xml(str(path), content).tag == "robot"
     mjcf = path.name if not urdf and path.suffix == ".xml" else f"{title}.xml"
@@ -35,7 +36,7 @@ def robot_body(
 
 
 def _converted(path: Path, content: bytes, output: Path, title: str) -> tuple[dict[Path, bytes], list[Diagnostic]]:
-    """Return the MJCF of a URDF with its meshes, and findings about what was lost."""
+    """Return a URDF's MJCF and meshes by path, or nothing if it can't be converted, and findings about losses."""
     here = Place(str(path), 1, 1)
     try:
         from lumen.features.formats_robots.urdf_conversion import urdf_as_mjcf
@@ -55,7 +56,7 @@ def _converted(path: Path, content: bytes, output: Path, title: str) -> tuple[di
 
 
 def _refused(path: Path) -> list[Diagnostic]:
-    """Return MuJoCo's error about an MJCF; nothing if it is valid or MuJoCo is not installed."""
+    """Return MuJoCo's error about an MJCF as a finding; empty if it is valid or MuJoCo is not installed."""
     try:
         from lumen.features.formats_robots.urdf_conversion import mjcf_fault
     except MissingExtraError:

@@ -1,4 +1,4 @@
-"""Reads a robot's MJCF as far as roles need. It does not use MuJoCo, which need not be installed."""
+"""Reads the parts of a robot's MJCF that a body file needs, without MuJoCo."""
 
 from math import degrees, pi, radians
 
@@ -24,7 +24,7 @@ _MAIN = "main"
 
 
 class Defaults:
-    """The default classes of a model: attributes of elements by class and tag, with those of enclosing classes."""
+    """A model's default classes: attributes by class and tag, including the attributes of enclosing classes."""
 
     def __init__(self, root: XmlElement) -> None:
         self._classes: dict[str, dict[str, dict[str, str]]] = {_MAIN: {}}
@@ -44,11 +44,11 @@ class Defaults:
             self._read(inner, known, name)
 
     def has(self, name: str) -> bool:
-        """Return whether the model has a class of that name; no name means the main class."""
+        """Return whether the model has a class with this name; the main class has an empty name."""
         return not name or name in self._classes
 
     def whole(self, element: XmlElement, childclass: str = "") -> XmlElement:
-        """Return the element with the defaults of its class, else of the enclosing body's, else of the main class."""
+        """Return the element with the defaults of its class, else of `childclass`, else of the main class."""
         name = element.get("class") or childclass or _MAIN
         known = self._classes.get(name, self._classes[_MAIN])
         given = dict(known.get(element.tag, {}))
@@ -59,18 +59,18 @@ class Defaults:
 
 _ORIGIN = (0.0, 0.0, 0.0)
 SAME_ANGLE = 1e-3
-"""The tolerance of rounded angles [rad]."""
+"""The tolerance for rounded angles [rad]."""
 SAME_TORQUE = 1e-3
-"""The relative difference of the torques in two directions that is ignored."""
+"""The relative difference between the torques in both directions that is ignored."""
 _FOVY = 45.0
 _EQUAL = (0.0, 1.0, 0.0, 0.0, 0.0)
-"""The coefficients of a joint that equals another one."""
+"""The coefficients of a joint whose angle equals another joint's."""
 _PLACED_ELSEWHERE = ("include", "attach", "replicate", "composite", "flexcomp")
 _SENSORS = ("gyro", "accelerometer")
 
 
 def mjcf_model(root: XmlElement, file: str, findings: ConversionFindings) -> RobotModel:
-    """Return the robot; report joints that a body file can't have, and parts in other files."""
+    """Return the robot; report joints that a body file can't have, and elements that are not expanded."""
     return _MjcfReader(root, file, findings).read()
 
 
@@ -137,7 +137,7 @@ class _MjcfReader:
         )
 
     def equality(self, pair: XmlElement) -> None:
-        """Note a joint that equals another; report one that follows in another way."""
+        """Record a joint that equals another; report a joint that follows with other coefficients."""
         for name, hint in KNOWN["<equality> <joint>"].losses(pair.attributes):
             self.findings.lost(pair.place, f"`{name[:60]}` of `<joint>` in `<equality>` is left out", hint)
         follower, leader = pair.get("joint1"), pair.get("joint2")
@@ -151,7 +151,7 @@ class _MjcfReader:
             self.findings.changed(pair.place, *follows(follower, leader))
 
     def body(self, body: XmlElement, outer: NestedFrame, above: str, childclass: str) -> None:
-        """Read the content of a body, and of the bodies in it."""
+        """Read the content of a body or frame, including nested ones."""
         childclass = body.get("childclass") or childclass
         frame = self.frame(body).within(outer)
         name = body.get("name") or above
@@ -171,11 +171,11 @@ class _MjcfReader:
                     self.body(element, frame, name, childclass)
 
     def frame(self, element: XmlElement) -> NestedFrame:
-        """Return an element's frame in its parent's."""
+        """Return an element's frame, relative to its parent's."""
         return NestedFrame(self.numbers.vector(element, "pos", _ORIGIN), self.turned(element))
 
     def turned(self, element: XmlElement) -> Quaternion:
-        """Return an element's rotation, in any of MJCF's forms."""
+        """Return an element's rotation from any of MJCF's forms; the identity without a valid one."""
         numbers = self.numbers
         if q := numbers.all(element, "quat", 4):
             return unit((q[0], q[1], q[2], q[3]))
@@ -190,7 +190,7 @@ class _MjcfReader:
         return NestedFrame().turned
 
     def joint(self, joint: XmlElement, frame: NestedFrame, link: str) -> None:
-        """Add a hinge joint; report others."""
+        """Add a hinge joint; report joints without a name or of another type."""
         name, kind = joint.get("name"), joint.get("type", "hinge")
         if kind == "free":
             self.free(joint)
@@ -219,9 +219,9 @@ class _MjcfReader:
         self.findings.lost(joint.place, "the model has a free joint to the world", hint)
 
     def limits(self, joint: XmlElement) -> tuple[float | None, float | None]:
-        """Return the joint's range [rad]; both ends are None if it turns endlessly.
+        """Return the joint's range [rad]; both ends are None if it has no limits.
 
-        An empty range is reported and counts as endless.
+        An empty range is reported and ignored.
         """
         span = self.numbers.all(joint, "range", 2)
         limited = joint.get("limited", "auto")
@@ -254,7 +254,7 @@ class _MjcfReader:
             self.findings.changed(motor.place, message, "give the joint this `range` in the body")
 
     def gear(self, motor: XmlElement) -> float:
-        """Return the turns of the motor for each turn of the joint."""
+        """Return the motor's turns per turn of the joint; 1 without a valid `gear`."""
         return float(word) if _is_number(word := (motor.get("gear", "1").split() or ["1"])[0]) else 1.0
 
     def effort(self, joint: XmlElement, motor: XmlElement | None) -> float | None:
@@ -273,7 +273,7 @@ class _MjcfReader:
         return min((torque for torque in most if torque > 0), default=None)
 
     def uneven(self, element: XmlElement, spans: list[tuple[float, ...]]) -> None:
-        """Report torques that differ between the directions."""
+        """Report torques that differ between both directions."""
         for low, high in spans:
             if abs(low + high) > SAME_TORQUE * max(abs(low), abs(high)):
                 message = (
@@ -282,7 +282,7 @@ class _MjcfReader:
                 self.findings.changed(element.place, message)
 
     def camera(self, camera: XmlElement, link: str) -> None:
-        """Add a camera with a valid angle of view."""
+        """Add a camera that has a name; report and leave out one with an invalid angle of view."""
         if not camera.get("name"):
             return
         given = self.numbers.one(camera, "fovy")

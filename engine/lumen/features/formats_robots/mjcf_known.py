@@ -1,6 +1,6 @@
-"""The parts of an MJCF that go into a body file. The model itself is not changed; MuJoCo reads the rest of it.
+"""The parts of an MJCF that a body file needs, and those that only MuJoCo uses, which stay in the model.
 
-The names are those of MuJoCo 3 (`mj_printSchema`): a name in no table is misspelt, and MuJoCo would refuse it.
+The names are those of MuJoCo 3 (`mj_printSchema`). MuJoCo rejects any other name.
 """
 
 from lumen.project.formats.known import FormatTable, Known

@@ -1,4 +1,4 @@
-"""Numbers in a robot's model, and nested frames: positions and quaternions (w, x, y, z), as in URDF and MJCF."""
+"""Reads numbers in URDF and MJCF, and computes nested frames from positions and quaternions (w, x, y, z)."""
 
 from dataclasses import dataclass
 from math import cos, hypot, isfinite, sin
@@ -15,13 +15,13 @@ UPRIGHT: Quaternion = (1.0, 0.0, 0.0, 0.0)
 
 @dataclass(frozen=True, slots=True)
 class NestedFrame:
-    """The position [m] and rotation of a frame in its parent's."""
+    """A frame's position [m] and rotation, relative to its parent."""
 
     place: Vector = (0.0, 0.0, 0.0)
     turned: Quaternion = UPRIGHT
 
     def within(self, outer: "NestedFrame") -> "NestedFrame":
-        """Return this frame in the frame that `outer` is given in."""
+        """Return this frame, which is inside `outer`, relative to the parent of `outer`."""
         x, y, z = rotated(outer.turned, self.place)
         a, b, c = outer.place
         return NestedFrame((a + x, b + y, c + z), product(outer.turned, self.turned))
@@ -47,7 +47,7 @@ def rotated(q: Quaternion, v: Vector) -> Vector:
 
 
 def turn(axis: Vector, angle: float) -> Quaternion:
-    """Return the rotation about an axis by that angle [rad]; the identity if the axis has no length."""
+    """Return the rotation about an axis by an angle [rad]; the identity if the axis has no length."""
     length = hypot(*axis)
     if not length:
         return UPRIGHT
@@ -56,9 +56,9 @@ def turn(axis: Vector, angle: float) -> Quaternion:
 
 
 def euler(angles: Vector, sequence: str = "xyz") -> Quaternion:
-    """Return three rotations [rad] about the axes of `sequence`.
+    """Return the rotation by three angles [rad] about the axes of `sequence`.
 
-    Lower-case letters mean rotated axes, upper-case ones fixed axes.
+    Lower-case letters are rotated axes, and upper-case letters fixed axes.
     """
     q = UPRIGHT
     for letter, angle in zip(sequence, angles, strict=False):
@@ -68,7 +68,10 @@ def euler(angles: Vector, sequence: str = "xyz") -> Quaternion:
 
 
 def between(start: Vector, end: Vector) -> Quaternion:
-    """Return the smallest rotation from one direction to another; half a turn about x if they are opposite."""
+    """Return the smallest rotation from one direction to another.
+
+    It is half a turn about x for opposite directions, and the identity if a direction has no length.
+    """
     lengths = hypot(*start) * hypot(*end)
     if not lengths:
         return UPRIGHT
@@ -93,13 +96,13 @@ def unit(q: Quaternion) -> Quaternion:
 
 
 class Numbers:
-    """Reads attributes; invalid numbers are reported with their place and treated as missing."""
+    """Reads numbers in attributes; invalid ones are reported and treated as missing."""
 
     def __init__(self, findings: ConversionFindings) -> None:
         self.findings = findings
 
     def all(self, element: XmlElement, name: str, count: int) -> tuple[float, ...] | None:
-        """Return `count` numbers; None if the attribute is missing or invalid, and report an invalid one."""
+        """Return an attribute's `count` numbers, or None if it is missing or invalid; report an invalid one."""
         text = element.get(name)
         if not text:
             return None
@@ -115,11 +118,11 @@ class Numbers:
         return numbers
 
     def one(self, element: XmlElement, name: str) -> float | None:
-        """Return one number, None if it is missing or invalid."""
+        """Return an attribute's number, or None if it is missing or invalid."""
         found = self.all(element, name, 1)
         return found[0] if found else None
 
     def vector(self, element: XmlElement, name: str, otherwise: Vector) -> Vector:
-        """Return three numbers; `otherwise` if the attribute is missing or invalid."""
+        """Return an attribute's three numbers, or `otherwise` if it is missing or invalid."""
         found = self.all(element, name, 3)
         return (found[0], found[1], found[2]) if found else otherwise

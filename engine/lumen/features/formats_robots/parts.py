@@ -1,4 +1,4 @@
-"""The parts of a robot's model, in any format."""
+"""A robot's model, independent of its file format."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -13,38 +13,38 @@ class ModelJoint:
 
     name: str
     link: str
-    """The link that it moves."""
+    """The link that the joint moves."""
     place: Place
     position: Vector
-    """Its position in the robot's frame, with all joints at zero [m]."""
+    """The position in the robot's frame, with all joints at zero [m]."""
     axis: Vector
-    """Its axis in the robot's frame, with all joints at zero."""
+    """The axis in the robot's frame, with all joints at zero."""
     low: float | None = None
-    """The lower limit [rad], None for a joint that turns endlessly."""
+    """The lower limit [rad], or None without limits."""
     high: float | None = None
-    """The upper limit [rad], None for a joint that turns endlessly."""
+    """The upper limit [rad], or None without limits."""
     speed: float | None = None
-    """The greatest speed [rad/s], None if unknown."""
+    """The greatest speed [rad/s], or None if unknown."""
     effort: float | None = None
-    """The greatest torque [N m], None if unknown."""
+    """The greatest torque [N m], or None if unknown."""
     follows: str = ""
-    """The joint whose angle it equals, since one motor moves both; empty for none."""
+    """The joint whose angle this joint equals, since one motor moves both; empty for none."""
     servo: bool = False
-    """Whether a position servo of its name drives it."""
+    """Whether a position servo with the joint's name drives it."""
     wheel: bool = False
-    """Whether a velocity motor drives it."""
+    """Whether a velocity motor drives the joint."""
 
 
 @dataclass(frozen=True, slots=True)
 class ModelCamera:
-    """A camera of a model."""
+    """A camera of an imported robot."""
 
     name: str
     link: str
     position: Vector
-    """Its position in the link's frame [m]."""
+    """The position in the link's frame [m]."""
     ahead: Vector
-    """Its direction in the link's axes."""
+    """The direction of view in the link's frame."""
     fovy: float
     """The vertical angle of view [rad]."""
 
@@ -59,17 +59,17 @@ class RobotModel:
     joints: Sequence[ModelJoint]
     """The hinges, in the file's order."""
     links: Mapping[str, str]
-    """The parent of each link, empty for the root."""
+    """The parent of each link; empty for the root."""
     cameras: Sequence[ModelCamera] = ()
     sites: Mapping[str, str] = field(default_factory=dict)
     """The link of each site."""
     sensors: Mapping[str, str] = field(default_factory=dict)
-    """The first sensor of each kind."""
+    """The name of the first sensor of each kind."""
     materials: Sequence[str] = ()
     """The names of materials."""
 
     def carries(self, link: str, other: str) -> bool:
-        """Return whether `other` is that link or a descendant of it."""
+        """Return whether `other` is `link` or a descendant of it."""
         seen = set[str]()
         while other and other not in seen:
             if other == link:
@@ -80,6 +80,6 @@ class RobotModel:
 
 
 def follows(follower: str, leader: str) -> tuple[str, str]:
-    """Return the message and the hint for a joint that follows another one with a factor or an offset."""
+    """Return the message and the hint for a joint that follows another with a factor or an offset."""
     message = f"`{follower}` follows `{leader}` with a factor or an offset: only the model moves it"
     return message, "in motions, use the joint that it follows"

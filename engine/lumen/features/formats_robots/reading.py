@@ -17,11 +17,11 @@ _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]*")
 _BEFORE = re.compile(rb"<\?.*?\?>|<!--.*?-->", re.DOTALL)
 _ROOT = re.compile(rb"<(robot|mujoco)[\s>/]")
 MAX_JOINTS = 1_000
-"""The most joints of a robot; even a centipede has fewer."""
+"""The most joints in a model; even a centipede has fewer."""
 
 
 def begins_robot(content: bytes) -> bool:
-    """Return whether XML is a robot's model, by its first element."""
+    """Return whether XML is a robot's model, judging by its first element."""
     start = content.removeprefix(b"\xef\xbb\xbf")[:100_000].lstrip()
     while before := _BEFORE.match(start):
         start = start[before.end() :].lstrip()
@@ -29,9 +29,9 @@ def begins_robot(content: bytes) -> bool:
 
 
 def read_robot(file: str, content: bytes, title: str, mjcf: str) -> tuple[str, list[Diagnostic]]:
-    """Return the text of the body file, and findings; `mjcf` is the model's file name in the same folder.
+    """Return the body file's text, and findings; `mjcf` is the model's file name in the same folder.
 
-    Raises ForeignFileError if it is not a robot's model, has no usable joint, or has more than MAX_JOINTS.
+    Raises ForeignFileError if the file is not a robot's model, has no usable joint, or has more than MAX_JOINTS.
     """
     root = parse_xml(file, content)
     reader = _READERS.get(root.tag)
@@ -62,7 +62,10 @@ def read_robot(file: str, content: bytes, title: str, mjcf: str) -> tuple[str, l
 
 
 def _named(joints: Sequence[ModelJoint], findings: ConversionFindings) -> list[ModelJoint]:
-    """Return the joints whose names are valid in a body file, without duplicates; report the others."""
+    """Return the joints whose names are valid in a body file and unique; report the others.
+
+    A joint that follows a missing one is also left out.
+    """
     found: dict[str, ModelJoint] = {}
     for joint in joints:
         if not _NAME.fullmatch(joint.name):
@@ -76,7 +79,7 @@ def _named(joints: Sequence[ModelJoint], findings: ConversionFindings) -> list[M
 
 
 def _missing(model: RobotModel, joints: Sequence[ModelJoint], findings: ConversionFindings) -> None:
-    """Report what a body needs but the model lacks."""
+    """Report the limits, torques and speeds that a body needs but the model lacks."""
     for joint in joints:
         if joint.low is None:
             hint = f"write its `range` into the body file, which now has [-{CIRCLE:.4g}, {CIRCLE:.4g}]"

@@ -1,4 +1,4 @@
-"""Reads a robot's URDF (wiki.ros.org/urdf/XML): its joints. Transmissions and tags of simulators are ignored."""
+"""Reads the joints and links of a robot's URDF (wiki.ros.org/urdf/XML), without transmissions and simulators' tags."""
 
 from lumen.features.formats_robots.orientation import AXES, NestedFrame, Numbers, Quaternion, euler, rotated
 from lumen.features.formats_robots.parts import ModelJoint, RobotModel, follows
@@ -56,7 +56,7 @@ KNOWN: FormatTable = {
     "<mimic>": Known(frozenset(("joint", "multiplier", "offset"))),
     "<dynamics>": Known(frozenset(("damping", "friction"))),
 }  # fmt: skip
-"""The parts of a URDF that go into the body file, or into the MJCF that MuJoCo generates."""
+"""The parts of a URDF: those read for the body file or for MuJoCo's conversion to MJCF, lost ones and meaningless ones."""
 
 _HINGES = ("revolute", "continuous")
 _ORIGIN = (0.0, 0.0, 0.0)
@@ -93,9 +93,9 @@ class _UrdfReader:
         return RobotModel(self.root.get("name"), self.file, self.root.place, found, self.links)
 
     def known(self, joint: XmlElement) -> bool:
-        """Return whether a joint connects two links of the file, and gives the child its only parent.
+        """Record the parent of a joint's child; return whether the joint is valid.
 
-        If not, report it.
+        Otherwise report it: it must connect two links of the file, and be the child's only parent joint.
         """
         name, ends = joint.get("name"), []
         for end in ("parent", "child"):
@@ -114,13 +114,13 @@ class _UrdfReader:
         return True
 
     def hangs(self, link: str, on: str) -> bool:
-        """Return whether a link is another one or a descendant of it."""
+        """Return whether `link` is `on` or a descendant of it."""
         while link and link != on:
             link = self.links.get(link, "")
         return link == on
 
     def frame(self, joint: XmlElement, frames: dict[str, NestedFrame]) -> NestedFrame:
-        """Return the frame of the joint's link in the robot's, with all joints at zero."""
+        """Return the frame of a joint's child in the robot's frame, with all joints at zero; `frames` is a cache."""
         chain: list[XmlElement] = []
         link = next(joint.of("child")).get("link")
         while link in self.above and link not in frames:
@@ -136,7 +136,7 @@ class _UrdfReader:
         return frame
 
     def hinge(self, joint: XmlElement, frame: NestedFrame) -> ModelJoint | None:
-        """Return a turning joint, None for a fixed one; report others."""
+        """Return a joint that turns, or None for any other; report others that are not fixed."""
         kind, name = joint.get("type"), joint.get("name")
         if kind == "fixed":
             return None
@@ -162,10 +162,10 @@ class _UrdfReader:
         )  # fmt: skip
 
     def limits(self, limit: XmlElement | None) -> tuple[float | None, float | None, float | None, float | None]:
-        """Return the lowest and highest angle, the speed and the torque.
+        """Return the lowest and highest angle [rad], the speed [rad/s] and the torque [N m].
 
-        A missing angle is 0 if the other one is given, else None; an empty range is reported, and both are None. Speed
-        and torque are None if they are missing or not positive.
+        A missing angle is 0 if the other one is given, else None. An empty range is reported, and both angles are None.
+        Speed and torque are None if they are missing or not positive.
         """
         if limit is None:
             return None, None, None, None
@@ -182,7 +182,7 @@ class _UrdfReader:
         return low, high, speed if speed and speed > 0 else None, effort if effort and effort > 0 else None
 
     def mimic(self, joint: XmlElement) -> tuple[str, bool]:
-        """Return the name of the joint that this one follows, empty if none, and whether with the same angle.
+        """Return the name of the joint that this one follows, or empty, and whether both angles are equal.
 
         A `<mimic>` that names no joint is reported.
         """

@@ -1,4 +1,4 @@
-"""Converts a robot's URDF to MJCF with MuJoCo's own compiler, after removing what it can't read."""
+"""Converts a robot's URDF to MJCF with MuJoCo's own compiler, without meshes that MuJoCo can't read."""
 
 import re
 from collections.abc import Iterator, Mapping
@@ -14,7 +14,7 @@ demand("simulation", "MuJoCo's model of an imported robot", "mujoco")
 import mujoco  # noqa: E402  if it is installed
 
 READ = (".stl", ".obj", ".msh")
-"""The endings of meshes that MuJoCo reads."""
+"""The file extensions of meshes that MuJoCo reads."""
 
 MAX_MESH_BYTES = 50_000_000
 """The largest mesh [bytes]; larger ones are left out."""
@@ -24,7 +24,7 @@ _COMPILER = {
     "boundmass": "0.001", "boundinertia": "0.0000001",
 }  # fmt: skip
 _SEEN, _TOUCHING = 2, 3
-"""The groups of geoms, as in Lumen's own models."""
+"""The geom groups of visible and colliding shapes, as in Lumen's own models."""
 
 
 @dataclass(frozen=True)
@@ -35,14 +35,14 @@ class ConvertedRobot:
     meshes: Mapping[str, bytes]
     """The meshes that the MJCF refers to, by their new names."""
     lost: Mapping[int, str]
-    """Why other meshes are lost, by their number in the URDF."""
+    """The reasons why other meshes are lost, by their index in the URDF."""
 
 
 def urdf_as_mjcf(content: bytes, folder: Path, name: str) -> ConvertedRobot:
-    """Convert a URDF that is known to be XML without entities; meshes are searched for, starting from `folder`.
+    """Convert a URDF, which must be XML without entities; meshes are searched for, starting from `folder`.
 
-    A mesh that is missing, or that MuJoCo can't read, is left out with its shape. Raises RobotModelError if MuJoCo
-    can't build the rest.
+    A mesh that is missing, too large or in an unknown format is left out with its shape. Raises RobotModelError if
+    MuJoCo can't build the rest.
     """
     root = ElementTree.fromstring(content)
     meshes, lost = _take_meshes(root, folder)
@@ -62,7 +62,7 @@ def urdf_as_mjcf(content: bytes, folder: Path, name: str) -> ConvertedRobot:
 
 
 def mjcf_fault(path: Path) -> str:
-    """Return the reason why MuJoCo can't build the robot of an MJCF file; empty if it can."""
+    """Return the reason why MuJoCo can't build the robot in an MJCF file; empty if it can."""
     try:
         mujoco.MjSpec.from_file(str(path)).compile()
     except (ValueError, RuntimeError, mujoco.FatalError) as error:
@@ -71,7 +71,7 @@ def mjcf_fault(path: Path) -> str:
 
 
 def _sort_geoms(spec: mujoco.MjSpec) -> None:
-    """Put visible and colliding shapes into Lumen's groups of geoms, and let colliding ones touch things in a hall."""
+    """Sort visible and colliding shapes into Lumen's geom groups; let colliding ones touch objects in a hall."""
     for body in spec.bodies:
         seen = [geom for geom in body.geoms if not (geom.contype or geom.conaffinity)]
         for geom in body.geoms:
@@ -81,7 +81,10 @@ def _sort_geoms(spec: mujoco.MjSpec) -> None:
 
 
 def _take_meshes(root: ElementTree.Element, folder: Path) -> tuple[dict[str, bytes], dict[int, str]]:
-    """Give meshes new names, and remove the shapes of unavailable ones."""
+    """Rename the meshes in the URDF, and remove the shapes of unavailable ones.
+
+    Return the contents of the meshes by new name, and the reasons for losses by index.
+    """
     meshes, lost, names = dict[str, bytes](), dict[int, str](), dict[Path, str]()
     numbers = {mesh: number for number, mesh in enumerate(root.iter("mesh"))}
     for link in list(root.iter("link")):
@@ -101,7 +104,7 @@ def _take_meshes(root: ElementTree.Element, folder: Path) -> tuple[dict[str, byt
 
 
 def _found(filename: str, folder: Path) -> tuple[Path | None, str]:
-    """Return the path of a mesh in a URDF, or None and the reason."""
+    """Return the path of a URDF's mesh, or None and the reason why it is unavailable."""
     inner = re.sub(r"^(package|file|model)://", "", filename).lstrip("/")
     ending = Path(inner).suffix.lower()
     if not inner or "\0" in inner:
@@ -118,10 +121,10 @@ def _found(filename: str, folder: Path) -> tuple[Path | None, str]:
 
 
 def _candidates(inner: str, folder: Path) -> Iterator[Path]:
-    """Yield possible paths of a mesh, from the URDF's folder and up to four folders above it.
+    """Yield possible paths of a mesh in the URDF's folder and up to four folders above it.
 
-    Each path is tried as written, and without its first one or two folders. Last come the bare file name in `meshes/`
-    and beside the URDF.
+    In each folder, they are the path as written, and without its first one or two folders. The last two are the bare
+    file name in `meshes/` and in the URDF's folder.
     """
     here = folder.resolve()
     parts = [part for part in Path(inner).parts if part != ".."]

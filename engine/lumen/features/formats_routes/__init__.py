@@ -1,4 +1,4 @@
-"""Routes and message bodies for other tools."""
+"""Export of routes and message bodies for other tools."""
 
 from lumen.feature import Exporter, Feature
 

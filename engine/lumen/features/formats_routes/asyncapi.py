@@ -1,4 +1,4 @@
-"""A project's routes as an AsyncAPI 3 document: what a module may send and receive, and how each message is carried."""
+"""Writes a project's routes as an AsyncAPI 3 document: the messages that a module can send and receive."""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -26,7 +26,7 @@ CARRIED_DESCRIPTIONS = {
 
 
 def write_asyncapi(project: Project) -> str:
-    """Return the document as YAML; `send` and `receive` are Lumen's actions, so that a module does the opposite."""
+    """Return the document as YAML. `send` and `receive` are Lumen's actions; a module does the opposite."""
     return yaml.safe_dump(document(project), sort_keys=False, allow_unicode=True, width=120)
 
 
@@ -61,7 +61,7 @@ def document(project: Project) -> dict[str, Any]:
 
 
 def _server(url: str) -> dict[str, Any]:
-    """Return the broker's address without the user."""
+    """Return the broker's address without credentials; localhost if the URL is not a valid AMQP address."""
     parts = urlsplit(url if url.startswith("amqp") and not fault_of_broker(url) else "amqp://localhost:5672/")
     host = f"{parts.hostname or 'localhost'}:{parts.port or (5671 if parts.scheme == 'amqps' else 5672)}"
     return {"host": host, "protocol": parts.scheme, "protocolVersion": "0.9.1"}
@@ -72,7 +72,7 @@ def _channel(route: Route, robot: str) -> dict[str, Any]:
 
 
 def channel(key: str, message: str, robot: str) -> dict[str, Any]:
-    """Return the channel of a routing key that carries the message of that name."""
+    """Return the channel for a routing key and the name of its message; `robot` is the default for `{robot}`."""
     made: dict[str, Any] = {
         "address": key,
         "messages": {message: {"$ref": f"#/components/messages/{message}"}},
@@ -90,7 +90,7 @@ def channel(key: str, message: str, robot: str) -> dict[str, Any]:
 
 
 def _old(route: Route) -> str:
-    """Return the name of the channel of a route's alias."""
+    """Return the channel name for a route's alias."""
     return f"{route.name}.alias"
 
 
@@ -133,7 +133,7 @@ def _message(route: Route, project: Project) -> dict[str, Any]:
 
 
 def _schema(data: Any, at: str) -> Any:
-    """Return a message schema for its place in the document: its references lead there, and it names no dialect."""
+    """Return a message schema without `$schema` and `$id`, and with its references relative to `at`."""
     if isinstance(data, list):
         return [_schema(item, at) for item in data]
     if not isinstance(data, dict):

@@ -1,4 +1,4 @@
-"""The skills that modules perform, in an AsyncAPI document: the channels of their calls and of the answers."""
+"""Adds the skills that modules perform to an AsyncAPI document: channels for calls and answers."""
 
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -23,9 +23,9 @@ _TEXT = {"type": "string"}
 
 
 def add_skills(document: dict[str, Any], project: Project, channel: Callable[[str, str, str], dict[str, Any]]) -> None:
-    """Add the channels, operations and messages by which modules perform skills of the project, if any does.
+    """Add the channels, operations and messages for the project's skills that modules perform, if there are any.
 
-    `channel` makes the channel of a routing key, the name of its message and the robot's name.
+    `channel` returns the channel for a routing key, a message name and the robot's name.
     """
     modules: dict[str, dict[str, VerbRow]] = {}
     for name, row in project.verbs.items():
@@ -53,7 +53,7 @@ def _message(name: str, title: str, payload: Mapping[str, Any]) -> dict[str, Any
 
 
 def _orders(skills: Mapping[str, VerbRow]) -> dict[str, Any]:
-    """Return the JSON Schema of what a module receives: a call of each skill, and messages about a call."""
+    """Return the JSON Schema of the messages that a module receives: calls of its skills, `cancel` and `go`."""
     calls = [
         _body(skill={"const": name, "description": row.description}, arguments=argument_schema(row))
         for name, row in skills.items()
@@ -62,7 +62,7 @@ def _orders(skills: Mapping[str, VerbRow]) -> dict[str, Any]:
 
 
 def _answers(modules: Mapping[str, Mapping[str, VerbRow]]) -> dict[str, Any]:
-    """Return the JSON Schema of what modules answer."""
+    """Return the JSON Schema of modules' answers."""
     results = [
         {**row.result, "type": "object", "title": f"The result of {name}"}
         for skills in modules.values()
@@ -82,10 +82,10 @@ def _answers(modules: Mapping[str, Mapping[str, VerbRow]]) -> dict[str, Any]:
 
 
 def _body(**properties: Any) -> dict[str, Any]:
-    """Return the schema of a message about a call that has all of these properties."""
+    """Return the schema of a message about a call, with these required properties."""
     return {"type": "object", "required": ["call", *properties], "properties": {"call": _CALL, **properties}}
 
 
 def _optional(message: dict[str, Any], /, **properties: Any) -> dict[str, Any]:
-    """Return a schema of `_body` with further properties that may be left out."""
+    """Return a schema from `_body` with additional optional properties."""
     return {**message, "properties": {**message["properties"], **properties}}
