@@ -15,8 +15,8 @@ digraph {
 def dot(machine: MachineDefinition) -> str:
     """Return the graph in Graphviz's DOT language, ending with a newline.
 
-    A state with inner states is a cluster, whose frame is the end of its arrows. An invoked behaviour is drawn once, as
-    a dashed cluster inside its state; further invocations are boxes with its name.
+    A state with inner states is a cluster, and its arrows end at the cluster's frame. An invoked behaviour is drawn
+    once, as a dashed cluster inside its state; further invocations are boxes with its name.
     """
     return "\n".join([_HEAD, *_DotDrawing(machine).lines(), "}"]) + "\n"
 
@@ -30,7 +30,7 @@ class _DotDrawing:
         self.ids = {path: f"{prefix}s{number}" for number, path in enumerate(machine.states)}
 
     def lines(self, name: str = "") -> Iterator[str]:
-        """Yield the machine's lines; `name` is the label of an invoked machine, empty for the outermost one."""
+        """Yield the machine's lines; `name` labels an invoked machine, and is empty for the outermost one."""
         yield from self._cluster(self.machine.root, 1, name)
         for state in self.machine.states.values():
             for transition in state.transitions:
@@ -76,10 +76,7 @@ class _DotDrawing:
             yield self._arrow(transition.source, target, f"label={_quoted(caption(transition))}{style}")
 
     def _arrow(self, source: str, target: str, look: str, *, begins: bool = False) -> str:
-        """Return an arrow. It ends at the frame of each cluster that does not contain its other end.
-
-        An arrow that `begins` (to an initial state) is not shortened.
-        """
+        """Return an arrow, clipped at the frame of each cluster that does not contain its other end."""
         looks = [look] if look else []
         for end, path, other in (("ltail", source, target), ("lhead", target, source)):
             holds = other == path or not path or other.startswith(f"{path}.")

@@ -64,7 +64,7 @@ class ForeignState:
     def calls(self, target: "ForeignState", title: str, *, inside: bool = False) -> str:
         """Return this state's reference to a target: `key` for a sibling, `.key` for a child, `#id` for others.
 
-        With `inside`, for `initial`, a child is `key` and a sibling `#id`. `title` is the id of a nameless root.
+        With `inside`, for `initial`, a child is `key` and a sibling `#id`. `title` is the root's id.
         """
         if target.parent is self:
             return target.key if inside else f".{target.key}"

@@ -12,9 +12,9 @@ _SPECIAL = re.compile(r"[^\w .,!?()=+*/&|\'\[\]…-]|--+|\b_+")
 def mermaid(machine: MachineDefinition) -> str:
     """Return the diagram's text, ending with a newline.
 
-    Mermaid accepts few characters in an id, so states have the ids `s0`, `s1`, … in document order and their keys as
-    labels. The label of a state without children also lists its transitions without a target. An invoked behaviour is
-    drawn once, as a separate region inside its state; further invocations are boxes with its name.
+    States have the ids `s0`, `s1`, … in document order and their keys as labels, since Mermaid accepts few characters
+    in an id. A label without inner states also lists transitions without a target. An invoked behaviour is drawn once,
+    as a region inside its state; further invocations are boxes with its name.
     """
     return "\n".join(["stateDiagram-v2", *_MermaidDrawing(machine).lines()]) + "\n"
 

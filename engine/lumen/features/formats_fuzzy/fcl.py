@@ -1,8 +1,8 @@
-"""Reads Fuzzy Control Language as the data of a controller file: IEC 61131-7, and jFuzzyLogic's and FuzzyLite's dialects.
+"""Reads Fuzzy Control Language (IEC 61131-7, jFuzzyLogic and FuzzyLite) as the data of a controller file.
 
 `FUNCTION_BLOCK` contains `VAR_INPUT`, `VAR_OUTPUT`, a `FUZZIFY` for each input, a `DEFUZZIFY` for each output, and
 `RULEBLOCK`s. A declaration can name several variables and their range. A term is a list of points, a single value or,
-in the dialects, a shape with parameters.
+outside the standard, a shape with parameters.
 """
 
 import re
@@ -81,7 +81,7 @@ class FclSection(NamedTuple):
 
 
 def read_fcl(file: str, content: bytes, title: str) -> tuple[dict[str, Any], list[Diagnostic]]:
-    """Return the data of a controller file, and findings about lost and changed parts.
+    """Return the data of a controller file, and findings.
 
     Raises ForeignFileError if the file has no `FUZZIFY`, or if no output or rule is left.
     """
@@ -231,7 +231,7 @@ class _FclReader:
                 self.findings.lost(self.at(statement), f"`{match['rest'][:40]}` in a declaration is left out")
 
     def asked(self, sections: list[FclSection]) -> None:
-        """Add inputs that have no terms but are used in formulas, with their declared or else an infinite range."""
+        """Add inputs without terms that formulas use, with their declared or else an infinite range."""
         formulas = " ".join(t.text for s in sections if s.kind == "DEFUZZIFY" for t in s.statements)
         words = set(
             re.findall(r"[A-Za-z_]\w*", " ".join(re.findall(r"(?i):=\s*FUNCTION\b(.*?)(?= TERM |$)", formulas)))
@@ -359,9 +359,9 @@ class _FclReader:
         spec.update(operators({"aggregation": said or None}, {"aggregation": usual}))
 
     def term(self, variable: str, spec: dict[str, Any], name: str, said: str, statement: FclStatement) -> list[float]:
-        """Add a term; return the x of its points or of its shape's ends, from which a missing range is derived.
+        """Add a term, or report one that can't be read.
 
-        The list is empty for a formula, and for a term that can't be read, which is reported.
+        Return the x of its points or of its shape's ends, from which a missing range is derived; empty without any.
         """
         points = [float(number) for point in _POINT.findall(said) for number in point]
         if points and not _POINT.sub("", said).strip():
@@ -398,8 +398,7 @@ class _FclReader:
     def single(self, variable: str, spec: dict[str, Any], name: str, x: float, statement: FclStatement) -> list[float]:
         """Add a term with a single value; return `[x]`.
 
-        The term is a constant if the defuzzifier is weighted (an output's `centroid` becomes weighted), else a set
-        without width.
+        With a weighted defuzzifier, which replaces an output's `centroid`, it is a constant, else a set without width.
         """
         if spec.get("defuzzifier", "centroid") == "centroid" and spec is self.draft.sides["outputs"].get(
             self.draft.names[variable]

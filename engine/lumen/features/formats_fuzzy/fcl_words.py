@@ -1,7 +1,7 @@
 """Translates the keywords of Fuzzy Control Language (the standard, jFuzzyLogic and FuzzyLite) to Lumen's.
 
-If only `AND` or `OR` is set, it also determines the other, by De Morgan's laws (IEC 61131-7); jFuzzyLogic pairs HAMACHER
-and EINSTEIN.
+If only `AND` or `OR` is set, it determines the other by De Morgan's laws (IEC 61131-7). jFuzzyLogic pairs HAMACHER and
+EINSTEIN.
 """
 
 import re
@@ -29,7 +29,7 @@ ORS: Mapping[str, tuple[str, str]] = {
     "einstein": ("einstein-sum", "hamacher-product"), "hsum": ("hamacher-sum", "hamacher-product"),
     "esum": ("einstein-sum", "einstein-product"),
 }  # fmt: skip
-"""Lumen's operator for each keyword of AND or OR, and the matching one in case the other is not set."""
+"""Lumen's operator for each keyword, and the matching operator if only one of AND and OR is set."""
 
 ACTS: Mapping[str, str] = {word: meant for word, (meant, _) in ANDS.items()}
 ACCUS: Mapping[str, str] = {
@@ -94,7 +94,7 @@ def reach(kind: str, parameters: list[float]) -> list[float]:
     """Return the x of a shape's ends as in jFuzzyLogic (`estimateUniverse`); empty for shapes it lacks.
 
     A gaussian ends 4 sigma from its mean, a bell at a membership of 0.001, and a sigmoid 9 / slope from its inflection.
-    The parameters of a piecewise shape are returned as they are.
+    The ends of a piecewise shape are among its parameters, which are all returned.
     """
     match kind, parameters:
         case "gaussian", [mean, sigma, *_]:

@@ -90,7 +90,7 @@ KNOWN: FormatTable = {
 """The parts of each section that are read or meaningless; `MF…` stands for `MF1`, `MF2`, …"""
 
 _HEDGES = {0.5: ("somewhat",), 2.0: ("very",), 4.0: ("very", "very")}
-"""Lumen's hedges, by the power of a membership. Octave adds a tenth of the power to the term number: `1.2` is `very`."""
+"""Lumen's hedges, by the power of a membership. Octave adds a tenth of it to the term number: `1.2` is `very`."""
 
 
 class FisLine(NamedTuple):
@@ -105,7 +105,7 @@ class FisLine(NamedTuple):
 
 
 class FisSection(NamedTuple):
-    """A section with its lines; `number` is 0 for a heading without a number, and `place` is the heading's."""
+    """A section with its lines, and its heading's number (0 for none) and place."""
 
     kind: str
     number: int
@@ -113,7 +113,7 @@ class FisSection(NamedTuple):
     place: Place
 
     def line(self, key: str) -> FisLine | None:
-        """Return the first line with this key, or None if there is none."""
+        """Return the first line with this key, or None."""
         return next((line for line in self.lines if line.key == key), None)
 
 
@@ -130,7 +130,7 @@ class FisVariable(NamedTuple):
 
 
 def read_fis(file: str, content: bytes, title: str) -> tuple[dict[str, Any], list[Diagnostic]]:
-    """Return the data of a controller file, and findings about lost and changed parts.
+    """Return the data of a controller file, and findings.
 
     Raises ForeignFileError if the file has no input, or if no output or rule is left.
     """
@@ -356,8 +356,8 @@ class _FisReader:
     def derived(self, variable: FisVariable, term: str, power: float, line: FisLine, *, negated: bool) -> str:
         """Add a term for a set's complement or for a power of its membership, and return the new term's name.
 
-        If the term is not a set, report it and return an empty name. Lumen's rules can't express such conclusions: a
-        hedge changes the rule's degree in Lumen, but the set in Octave.
+        Report a term that is not a set, and return an empty name. In a conclusion, a hedge changes the rule's degree in
+        Lumen, but the set in Octave.
         """
         kind, values = variable.shapes[term]
         formula = set_formula(kind, values)

@@ -14,7 +14,7 @@ def _n(value: float) -> str:
 
 
 def _up(a: float, b: float) -> str:
-    """Return a formula that is 0 up to a, 1 from b on, and linear between; without a slope, it steps at b."""
+    """Return a formula that is 0 up to a, 1 from b on, and linear between; if a is not below b, it steps at b."""
     return f"max(min((x - {_n(a)}) / {_n(b - a)}, 1), 0)" if a < b else f"(x >= {_n(b)} ? 1 : 0)"
 
 

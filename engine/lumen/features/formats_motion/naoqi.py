@@ -1,9 +1,9 @@
 """Reads keyframes from Python for NAOqi, exported by Choregraphe or written by hand, without running it.
 
-ALMotion's calls are `angleInterpolationBezier(names, times, keys)`, with keys `[angle, [type, dt, da], [type, dt, da]]`,
-and `angleInterpolation(names, angles, times, isAbsolute)`. Times are in [s], angles in [rad]. Statements are followed
-in order, and the file's functions at their calls. If none is called, each function that moves joints, or returns the
-lists for a motion, is a separate motion.
+ALMotion has `angleInterpolationBezier(names, times, keys)`, with keys `[angle, [type, dt, da], [type, dt, da]]`, and
+`angleInterpolation(names, angles, times, isAbsolute)`. Times are in [s], angles in [rad]. Statements are followed in
+order, and the file's functions at their calls. If the file calls nothing, each function that moves joints, or returns
+the lists for a motion, is a separate motion.
 """
 
 import ast

@@ -56,7 +56,7 @@ KNOWN: FormatTable = {
     "<mimic>": Known(frozenset(("joint", "multiplier", "offset"))),
     "<dynamics>": Known(frozenset(("damping", "friction"))),
 }  # fmt: skip
-"""The parts of a URDF: those read for the body file or for MuJoCo's conversion to MJCF, lost ones and meaningless ones."""
+"""The parts of a URDF that are read for the body file or for MuJoCo's MJCF, lost or meaningless."""
 
 _HINGES = ("revolute", "continuous")
 _ORIGIN = (0.0, 0.0, 0.0)
@@ -93,9 +93,9 @@ class _UrdfReader:
         return RobotModel(self.root.get("name"), self.file, self.root.place, found, self.links)
 
     def known(self, joint: XmlElement) -> bool:
-        """Record the parent of a joint's child; return whether the joint is valid.
+        """Return whether a joint connects two links of the file and is the child's only parent joint.
 
-        Otherwise report it: it must connect two links of the file, and be the child's only parent joint.
+        If so, record the child's parent; otherwise report the joint.
         """
         name, ends = joint.get("name"), []
         for end in ("parent", "child"):

@@ -1,7 +1,7 @@
 """Translates conditions and values of statecharts between ECMAScript and Lumen's expressions.
 
-Both languages are parsed into trees of `lumen.expressions`. ECMAScript's methods become function calls, such as `.trim`
-with the object as the first argument, and its additional operators, such as `===` and `typeof`, stay operators.
+Both are parsed into the trees of `lumen.expressions`. There, ECMAScript's methods are functions, such as `.trim` with
+the object as the first argument, and `===` and `typeof` are operators.
 """
 
 from lumen.features.formats_charts.ecmascript.reader import ScriptNames, ScriptTranslator, read_condition, read_value

@@ -100,8 +100,5 @@ def is_float(node: ExpressionNode) -> bool:
 
 
 def kinds_of(context: Mapping[str, Any], types: Mapping[str, Any]) -> dict[str, str]:
-    """Return the constant kinds of context keys, taken from their first values.
-
-    Keys whose first value is None or whose type is in `types` are left out.
-    """
+    """Return the kinds of the first values of context keys, without keys that are None or in `types`."""
     return {key: kind_of(value) for key, value in context.items() if value is not None and key not in types}

@@ -17,10 +17,7 @@ from lumen.features.formats_charts.ecmascript.script_parser import ScriptError
 from lumen.features.formats_charts.ecmascript.translation import Translation
 
 SIGN_FUNCTIONS = {"contained": "in", "same": "=="}
-"""Functions that the writer calls for operators without a form in ECMAScript.
-
-They are `in` for values of an unknown kind, and `==` for lists and maps, which ECMAScript compares by identity.
-"""
+"""Functions that the writer calls for `in` with values of an unknown kind, and for `==` with lists and maps."""
 
 LUMEN_FUNCTIONS = frozenset(
     (

@@ -42,7 +42,7 @@ class ScriptNames:
     states: Mapping[str, str] = field(default_factory=dict)
     """Lumen's names of states, by the ids used in `In()`."""
     events: Mapping[str, str] = field(default_factory=dict)
-    """Lumen's names of events, by the document's; events with the same name in both are left out."""
+    """Lumen's names of events, by the document's names, where they differ."""
     title: str = ""
     """The value of `_name`."""
 
@@ -84,10 +84,7 @@ class ScriptTranslator:
         return kind(node, self.names.kinds)
 
     def condition(self, tree: ExpressionNode) -> ExpressionNode:
-        """Return a Lumen tree that is true if an ECMAScript tree's value is truthy.
-
-        Raises ScriptError if Lumen can't express it.
-        """
+        """Return a Lumen tree that is true if an ECMAScript tree is truthy. Raises ScriptError if there is none."""
         match tree:
             case Logic(sign=sign, operands=operands):
                 return self._logic(sign, operands)
@@ -122,7 +119,7 @@ class ScriptTranslator:
         return guarded(self, Unary("!", Binary("in", node, _FALSY)), node)
 
     def value(self, tree: ExpressionNode) -> ExpressionNode:
-        """Return a Lumen tree with an ECMAScript tree's value. Raises ScriptError if Lumen can't express it."""
+        """Return a Lumen tree with an ECMAScript tree's value. Raises ScriptError if there is none."""
         match tree:
             case Literal(value=int() as value) if not isinstance(value, bool) and not MIN_INT <= value <= MAX_INT:
                 return Literal(float(value))

@@ -12,7 +12,7 @@ class Translation(Protocol):
     """The paths of the event fields known to be present."""
 
     def value(self, tree: ExpressionNode) -> ExpressionNode:
-        """Return a Lumen tree with the same value as `tree`. Raises ScriptError if Lumen can't express it."""
+        """Return a Lumen tree with an ECMAScript tree's value. Raises ScriptError if there is none."""
 
     def kind(self, node: ExpressionNode) -> str:
         """Return the kind of a Lumen tree's value, or UNKNOWN_KIND."""

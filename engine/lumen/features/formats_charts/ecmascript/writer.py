@@ -44,7 +44,7 @@ class Vocabulary(NamedTuple):
     kinds: Mapping[str, str] = {}
     """The constant kinds of context keys."""
     keys: Mapping[str, str] = {}
-    """The document's names of context keys, by Lumen's; a key that is not listed keeps its name in expressions."""
+    """The document's names of context keys, by Lumen's names."""
     states: Mapping[str, str] = {}
     """The document's ids of states, by Lumen's paths."""
 

@@ -128,8 +128,7 @@ class ScxmlActionReader:
     def _script(self, element: XmlElement) -> Iterator[ActionData]:
         """Yield a script's assignments.
 
-        Raises LeftOutError if it is in another file, does anything else, or assigns to an undeclared name, and
-        ScriptError if Lumen can't express a value.
+        Raises LeftOutError if it does more than assign to declared names, ScriptError if Lumen can't express a value.
         """
         found = assignments(element.text) if "src" not in element.attributes else None
         keys = self.context.keys
@@ -201,8 +200,7 @@ class ScxmlActionReader:
     def _constant(self, element: XmlElement, name: str, computed: str, *, optional: bool = False) -> str:
         """Return the attribute `name`, or the literal in the attribute `computed`, as text.
 
-        Raises LeftOutError if the value must be computed or is missing and not optional, and ScriptError if it is not
-        valid ECMAScript.
+        Raises LeftOutError if it must be computed or a required one is missing, ScriptError if it can't be parsed.
         """
         if computed in element.attributes:
             source = element.get(computed)

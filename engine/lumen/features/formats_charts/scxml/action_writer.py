@@ -106,10 +106,9 @@ class ScxmlActionWriter:
                 yield from self.block(choice.otherwise)
 
     def data(self, value: ComputedValue) -> list[XmlTag]:
-        """Return an event's data as elements: a `<param>` for each entry of a map, else one `<content>`.
+        """Return an event's data as elements: a `<param>` for each entry if it is a map with keys, else a `<content>`.
 
-        An empty map, or one with an empty key, also becomes `<content>`. Raises ScriptError if ECMAScript can't express
-        a value.
+        Raises ScriptError if ECMAScript can't express a value.
         """
         if isinstance(value, Mapping) and value and all(value):
             return [XmlTag("param", {"name": key, "expr": self.value(item)}) for key, item in value.items()]

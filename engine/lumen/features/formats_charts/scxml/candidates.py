@@ -20,11 +20,11 @@ from lumen.project.formats.behavior_data import TransitionData, single
 
 
 def arrange(rows: list[tuple[str, TransitionData]], leave_out: Callable[[TransitionData], None]) -> dict[str, Any]:
-    """Return `on` for the rows, which are candidates in this order; a descriptor's only candidate is not in a list.
+    """Return `on` for the candidates in `rows`, in this order; a descriptor's only candidate is not in a list.
 
-    If a descriptor comes both before and after another that matches some of the same events, the candidates of both
-    move to the most general descriptor, with guards on the event's name. A row whose guard becomes too long is passed
-    to `leave_out` instead.
+    If a descriptor comes both before and after another that matches some of the same events, their candidates move to
+    the most general descriptor, with guards on the event's name. If a guard becomes too long, its row is passed to
+    `leave_out` instead.
     """
     heads = _heads({descriptor for descriptor, _ in rows})
     order, mixed = _DescriptorOrder(), set[str]()
@@ -78,10 +78,7 @@ def _prefixes(descriptor: str) -> list[str]:
 
 
 def _narrowed(name: str, general: str, row: TransitionData) -> TransitionData | None:
-    """Return the row as a candidate of `general`, with a guard on the event's name if that differs.
-
-    Return None if the guard would be too long or too deep.
-    """
+    """Return the row as a candidate of `general`, guarded by its event's name; None if the guard would be too long."""
     if name == general:
         return row
     event = FieldAccess(Identifier("event"), "name")

@@ -65,7 +65,7 @@ ATTRIBUTES: FormatTable = {
     "lumen:state": Known(),
     "lumen:action": Known(),
 }  # fmt: skip
-"""The attributes of each element: those that are read, lost or meaningless."""
+"""The attributes of each element that are read, lost or meaningless."""
 
 _ACTION_NAMES = frozenset(("raise", "send", "cancel", "log", "assign", "if", "script", "lumen:action"))
 _OTHER_ACTIONS = {

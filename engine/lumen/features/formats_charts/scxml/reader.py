@@ -155,10 +155,9 @@ class _ScxmlReader:
                 self.findings.lost(transition.attribute_place(name), message, "delete it")
 
     def _default(self, node: ForeignState, transition: XmlElement, key: str) -> dict[str, Any]:
-        """Return the transition's targets under `key`: `initial`, or `target` for a history.
+        """Return the transition's targets under `key`; report invalid targets and return an empty map.
 
-        Actions move to an additional state; in a parallel state, they are reported and left out. The result is empty
-        if the targets are missing or invalid, and invalid ones are reported.
+        Actions move to an additional state. In a parallel state, they are reported and left out.
         """
         home = node if key == "initial" else node.parent
         found = self.transitions.targets(transition)
@@ -268,9 +267,9 @@ class _ScxmlReader:
         return rows
 
     def _named_apart(self, node: ForeignState, element: XmlElement, row: dict[str, Any]) -> dict[str, Any]:
-        """Return the row with an id that is unique among invocations active at the same time.
+        """Return the row with an id that is unique among simultaneous invocations.
 
-        Raises LeftOutError if the file itself repeats an id among them.
+        Raises LeftOutError if the file repeats an id among them.
         """
         id = row.get("id", row["behavior"])
 
@@ -328,14 +327,13 @@ class _ScxmlReader:
 class _ActiveTogether:
     """A set of states; `meets` returns whether a given state can be active together with any of them.
 
-    Two states can be active together if one contains the other, or if they are in different regions of a parallel
-    state.
+    It can if one contains the other, or if they are in different regions of a parallel state.
     """
 
     def __init__(self) -> None:
         self._states: set[ForeignState] = set()
         self._around: dict[ForeignState, set[ForeignState]] = {}
-        """The ancestors of the states, each with its children that are or contain one of the states."""
+        """The ancestors of the states, each with its children that lead to them."""
 
     def add(self, state: ForeignState) -> None:
         self._states.add(state)

@@ -30,10 +30,7 @@ class ScxmlTransitionReader:
         self.outline, self.contents, self.findings = outline, contents, findings
 
     def of(self, node: ForeignState, afters: dict[str, str]) -> dict[str, Any]:
-        """Return a state's transitions, by `on`, `hears`, `always`, `after`, `onDone` and `onError`.
-
-        `afters` maps the events of Lumen's timers to their delays.
-        """
+        """Return a state's transitions, by the keys of Lumen; `afters` maps the events of Lumen's timers to delays."""
         always: list[TransitionData] = []
         after: dict[str, list[TransitionData]] = {}
         rows: list[tuple[str, TransitionData]] = []
@@ -164,7 +161,7 @@ class ScxmlTransitionReader:
 
 
 def _heard(element: XmlElement) -> str:
-    """Return the key of the `hears` row from which Lumen wrote a transition; empty for any other transition."""
+    """Return the key of the `hears` row from which Lumen wrote a transition, or empty."""
     return element.get(f"{{{LUMEN_NAMESPACE}}}hears") if element.get("event") == HEARD else ""
 
 

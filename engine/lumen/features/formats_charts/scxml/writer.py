@@ -153,7 +153,7 @@ class _ScxmlWriter:
                 yield XmlTag(tag, {}, block)
 
     def _invokes(self, state: State) -> Iterator[XmlTag]:
-        """Yield an `<invoke>` of the exported file for each invoked behaviour; report inputs that can't be expressed."""
+        """Yield an `<invoke>` of each invoked behaviour's exported file; report input that can't be expressed."""
         for invoke in state.invoke:
             file = f"{invoke.behavior}.scxml"
             try:
@@ -248,7 +248,7 @@ class _ScxmlWriter:
 
 
 def _free(key: str, others: Container[str]) -> str:
-    """Return a context key's name in ECMAScript: `_` is appended until it is neither reserved nor another key."""
+    """Return a context key's name in ECMAScript, with `_` appended while it is reserved or another key."""
     name = key
     while is_reserved(name) or (name != key and name in others):
         name += "_"

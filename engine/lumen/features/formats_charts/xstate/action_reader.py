@@ -102,7 +102,7 @@ class XStateActionReader:
             self.lost((*where, key), message, hint)
 
     def _own(self, verb: str, params: Any) -> ActionData | None:
-        """Return an action that Lumen wrote, or None if it is no longer valid after an edit."""
+        """Return an action that Lumen wrote, or None if it is no longer valid."""
         if verb == "if" and isinstance(params, dict):
             action = params
         else:
@@ -168,9 +168,9 @@ class XStateActionReader:
         return body
 
     def _recipient(self, kind: str, data: Mapping[str, Any]) -> str:
-        """Return the actor that receives the event, or empty for the machine itself, the default of version 4's `send`.
+        """Return the actor that receives the event; empty for the machine itself, the default of version 4's `send`.
 
-        Raises _AbsentError if the JSON does not contain a recipient.
+        Raises _AbsentError if the JSON contains no recipient.
         """
         to = data.get("to")
         if to is None and kind == "xstate.send":
@@ -194,9 +194,9 @@ class XStateActionReader:
         return not has_errors([*found, *(d for d in report.diagnostics if d.code != "unknown-state")])
 
     def guard(self, data: Any, where: NodePath) -> str | None:
-        """Return a guard as a Lumen expression, which is a context key for a name without code.
+        """Return a guard as a Lumen expression; report an invalid one and return None.
 
-        Report and return None if the guard is invalid; a name without code is also reported.
+        A name without code is reported, and becomes a context key.
         """
         kind = data.get("type") if isinstance(data, dict) else data
         params = data.get("params") if isinstance(data, dict) else None
@@ -211,7 +211,7 @@ class XStateActionReader:
         return f"context.{self._placeholder(kind, data, where)}"
 
     def heard(self, data: Any, where: NodePath) -> TransitionData | None:
-        """Return the key and guard of a `hears` row from a guard that Lumen wrote; report and return None if invalid."""
+        """Return a `hears` row's key and guard from a guard that Lumen wrote; report an invalid one and return None."""
         params = data.get("params") if isinstance(data, dict) else None
         key, source = (params.get("row"), params.get("source")) if isinstance(params, dict) else (None, None)
         if isinstance(key, str) and key:

@@ -24,7 +24,7 @@ def is_descriptor(text: str) -> bool:
 
 
 def own_event(event: str) -> tuple[str, str] | None:
-    """Split one of XState's own events into Lumen's prefix and the id after it; return None for any other event."""
+    """Return Lumen's prefix for one of XState's own events, and the id after it; None for any other event."""
     for begin, ours in _OWN_EVENTS.items():
         if event.startswith(begin) and (id := event.removeprefix(begin)):
             return ours, id
@@ -32,7 +32,7 @@ def own_event(event: str) -> tuple[str, str] | None:
 
 
 def invoke_id(id: str) -> str:
-    """Return an invocation's id in a form that is valid at the end of an event's name; `_` if nothing is left."""
+    """Return an invocation's id in a form that is valid at the end of an event's name."""
     return ".".join(word for word in re.sub(r"[\s*]+", "_", id).split(".") if word) or "_"
 
 
@@ -87,10 +87,7 @@ def longest_first(descriptors: Sequence[str]) -> list[str]:
 
 
 def _rivals(descriptors: Sequence[str]) -> bool:
-    """Return whether an event can match two of the descriptors.
-
-    In alphabetical order, a prefix comes directly before a name that begins with it.
-    """
+    """Return whether an event can match two of the descriptors, by comparing neighbours in alphabetical order."""
     names = sorted(f"{bare(descriptor)}." for descriptor in descriptors)
     return ("*." in names and len(names) > 1) or any(b.startswith(a) for a, b in pairwise(names))
 

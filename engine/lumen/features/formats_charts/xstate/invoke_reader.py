@@ -98,10 +98,7 @@ class XStateInvokeReader:
         return data
 
     def _rows(self, state: XStateNode) -> Iterator[tuple[int, NodePath, Mapping[str, Any]]]:
-        """Yield the number, place and object of each item of `invoke`; report invalid items.
-
-        Version 4 allows a name alone, which is its `src`.
-        """
+        """Yield the number, place and object of each item of `invoke`, which is a name in version 4; report others."""
         data, where = state.source.get("invoke"), (*state.where, "invoke")
         rows = [((*where, i), row) for i, row in enumerate(data)] if isinstance(data, list) else [(where, data)]
         for number, (place, row) in enumerate(rows):

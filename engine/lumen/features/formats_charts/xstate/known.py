@@ -81,7 +81,7 @@ KNOWN: FormatTable = {
                    "buttons", "output", "invoke"))
     ),
 }  # fmt: skip
-"""The keys of each kind of object: those that are read, lost or meaningless."""
+"""The keys of each kind of object that are read, lost or meaningless."""
 
 STATE_KINDS = ("atomic", "compound", "parallel", "final", "history")
 BOOLEANS = frozenset(("reenter", "internal", "parallel"))

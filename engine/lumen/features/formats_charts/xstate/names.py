@@ -35,7 +35,7 @@ class XStateNames:
         return self.actors.get(id) or invoke_id(id)
 
     def _state(self, id: str) -> str:
-        """Return Lumen's name for the state with this id, or the id in a valid form if there is no such state."""
+        """Return Lumen's name for the state with this id; if there is none, the id in a valid form."""
         found = self.outline.resolve(self.outline.root, f"#{id}")
         return (found.name or self.outline.title) if found else invoke_id(id)
 

@@ -183,10 +183,9 @@ class _XStateReader:
         return data if "target" in data else data | self._default(state)
 
     def _default(self, state: XStateNode) -> dict[str, Any]:
-        """Return the `target` of a history without a valid one.
+        """Return the `target` of a history without a valid one: the states in which its parent begins.
 
-        It is the parent's initial state, or all children that can be active in a parallel state. If the initial state
-        is a history, that is reported, and the target is the first regular child.
+        If its parent begins with a history, that is reported, and the target is the first regular child.
         """
         home = state.parent
         assert isinstance(home, XStateNode)  # the machine itself is never read as a history
@@ -200,7 +199,7 @@ class _XStateReader:
         return {"target": self.transitions.named(state, list(home.regular))}
 
     def _initial(self, state: XStateNode) -> str:
-        """Return a reference to the state entered first, or to an additional state that runs actions before.
+        """Return a reference to the first state, or to an additional state that runs actions before.
 
         An invalid target is reported and replaced by the first inner state.
         """
@@ -299,7 +298,7 @@ class _XStateReader:
     def _table(self, state: XStateNode, key: str, named: str) -> list[tuple[str, NodePath, Any]]:
         """Return the keys of `on` or `after`, their places and transitions; report invalid items.
 
-        Version 4 also allows a list of transitions, which have the key under `named`.
+        In version 4, a list of transitions has the keys under `named`.
         """
         table, where = state.source.get(key), (*state.where, key)
         if isinstance(table, dict):

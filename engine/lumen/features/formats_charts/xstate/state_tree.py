@@ -33,19 +33,19 @@ class XStateNode(ForeignState):
 
     @property
     def foreign_id(self) -> str:
-        """XState's id for the state: its own, or its parent's and its key; `(machine)` for a machine without an id."""
+        """XState's id for the state: its own, else its parent's and its key, or `(machine)` for the root."""
         if isinstance(self.source.get("id"), str) and self.source["id"]:
             return str(self.source["id"])
         below = self.parent.foreign_id if isinstance(self.parent, XStateNode) else ""
         return f"{below}.{self.original}" if below else "(machine)"
 
     def child(self, key: str) -> "XStateNode | None":
-        """Return the child with this key in the file, or None if there is none."""
+        """Return the child with this key in the file, or None."""
         return self.named.get(key)
 
 
 def declared_kind(data: Mapping[str, Any]) -> str:
-    """Return the kind that a state declares, or empty: `history` needs no `type`, and version 4 has `parallel: true`."""
+    """Return the kind that a state declares, or empty; `history` needs no `type`, and version 4 has `parallel`."""
     if data.get("type"):
         return str(data["type"])
     if data.get("parallel") is True:

@@ -25,8 +25,7 @@ class XStateTransitionReader:
     ) -> list[TransitionData]:
         """Convert a target, an object or a list of these to transitions; report and leave out invalid ones.
 
-        With `eventless`, a transition without a guard and a target is invalid. With `heard`, a row of `hears` has its
-        key as `hears`.
+        An `eventless` transition without a guard and a target is invalid. If `heard`, a row has its key as `hears`.
         """
         rows = [((*where, i), row) for i, row in enumerate(data)] if isinstance(data, list) else [(where, data)]
         found = [self._row(state, place, {} if row is None else row, heard) for place, row in rows]
@@ -128,8 +127,7 @@ class XStateTransitionReader:
     def _way(self, state: XStateNode, where: NodePath, targets: list[XStateNode], reenter: bool) -> TransitionData:
         """Return `target` and `reenter`, if needed.
 
-        Without `reenter`, a transition from a state to itself stays in it: an atomic state needs no target, and the
-        target of a compound state is its initial child.
+        Without `reenter`, a transition to its own state has no target, or the initial child of a compound state.
         """
         if targets == [state] and not reenter and state.kind == "atomic":
             return {}

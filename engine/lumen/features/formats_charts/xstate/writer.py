@@ -66,9 +66,9 @@ class _XStateWriter:
         return data
 
     def _begin(self, state: State, data: dict[str, Any]) -> dict[str, Any]:
-        """Set `initial` in `data`, and return the additional state that it needs, by key; empty if it needs none.
+        """Set `initial` in `data`, and return the states that must be added, by key.
 
-        XState's `initial` must be a single child, so the additional state immediately enters any other target.
+        An added state immediately enters initial states that are not a single child.
         """
         if state.kind is not StateKind.COMPOUND:
             return {}
@@ -200,7 +200,7 @@ class _XStateWriter:
         return row
 
     def _heard(self, transition: Transition, row: Hears) -> dict[str, Any]:
-        """Return the guard for a row of `hears`: `lumen.hears`, or an expression if its phrases come from a list entry.
+        """Return the guard for a row of `hears`: `lumen.hears`, or an expression for phrases from a list entry.
 
         The change is reported, since other tools lack such rows.
         """

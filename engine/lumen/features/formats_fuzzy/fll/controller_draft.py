@@ -194,7 +194,7 @@ class ControllerDraft:
         return data
 
     def _empty(self, what: str, hint: str) -> ForeignFileError:
-        """Return the error for an empty controller, placed at the first part that was left out, else at the file."""
+        """Return the error for an empty controller, placed at the first part that was left out, if any."""
         first = next((d for d in self.findings.diagnostics if d.code == LOST), None)
         if first is None:
             return broken(Place(self.file), "not-a-controller", f"nothing is written: {what}", hint)

@@ -29,14 +29,14 @@ KNOWN: FormatTable = {
         meaningless={"RuleBlock": "a single block, or one without rules, needs no name"},
     ),
 }
-"""The keys of each kind of part in an engine: those that are read, lost or meaningless."""
+"""The keys of each kind of part in an engine that are read, lost or meaningless."""
 
 _FLAGS = ("enabled", "lock-range", "lock-previous")
 _USUAL = {"conjunction": "minimum", "disjunction": "maximum", "implication": "minimum"}
 
 
 def read_fll(file: str, content: bytes, title: str) -> tuple[dict[str, Any], list[Diagnostic]]:
-    """Return the data of a controller file, and findings about lost and changed parts.
+    """Return the data of a controller file, and findings.
 
     Raises ForeignFileError if the file has no variables, or if no output or rule is left.
     """
