@@ -7,7 +7,7 @@ from lumen.language.machines import Hears, Transition
 from lumen.talk.hearing import ENTRY
 
 LOST_ELSEWHERE = "implement this guard in the other tool: the longest match, negation, questions and captured values"
-"""The hint for a converted row of `hears`, with the features that other tools lose."""
+"""The hint for a converted row of `hears`, which lists the features that are lost."""
 HEARD_TEXT = "event.data.result"
 
 

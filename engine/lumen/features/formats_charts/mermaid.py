@@ -13,8 +13,8 @@ def mermaid(machine: MachineDefinition) -> str:
     """Return the diagram's text, ending with a newline.
 
     States have the ids `s0`, `s1`, … in document order and their keys as labels, since Mermaid accepts few characters
-    in an id. A label without inner states also lists transitions without a target. An invoked behaviour is drawn once,
-    as a region inside its state; further invocations are boxes with its name.
+    in an id. The label of a state without children also lists transitions without a target. An invoked behaviour is
+    drawn once, as a region inside its state; further invocations are boxes with its name.
     """
     return "\n".join(["stateDiagram-v2", *_MermaidDrawing(machine).lines()]) + "\n"
 
@@ -84,7 +84,7 @@ class _MermaidDrawing:
             yield from self._inside(invoke, f"{self.ids[state.path]}i{number}", depth)
 
     def _inside(self, invoke: Invoke, id: str, depth: int) -> Iterator[str]:
-        """Yield the lines for an invoked behaviour, with only its name if it is unknown or already drawn."""
+        """Yield the lines for an invoked behaviour: a box with its states, or only its name if unknown or drawn."""
         indent, machine = "  " * depth, self.machine.invoked.get(invoke.behavior)
         name = _escaped(invocation(invoke))
         if machine is None or invoke.behavior in self.drawn:

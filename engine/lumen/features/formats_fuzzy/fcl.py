@@ -161,7 +161,7 @@ class _FclReader:
         return text[: begins[1].start()]
 
     def tell_outside(self, text: str, sections: list[FclSection]) -> None:
-        """Report text before, between and after the sections, each time at its first word."""
+        """Report any text before, between and after the sections, at its first word."""
         for begin, end in zip([0, *(s.end for s in sections)], [*(s.offset for s in sections), len(text)], strict=True):
             outside = text[begin:end]
             at = 0
@@ -361,7 +361,7 @@ class _FclReader:
     def term(self, variable: str, spec: dict[str, Any], name: str, said: str, statement: FclStatement) -> list[float]:
         """Add a term, or report one that can't be read.
 
-        Return the x of its points or of its shape's ends, from which a missing range is derived; empty without any.
+        Return the x values of its points or its shape's ends, which determine a missing range; empty if it has none.
         """
         points = [float(number) for point in _POINT.findall(said) for number in point]
         if points and not _POINT.sub("", said).strip():
@@ -398,7 +398,8 @@ class _FclReader:
     def single(self, variable: str, spec: dict[str, Any], name: str, x: float, statement: FclStatement) -> list[float]:
         """Add a term with a single value; return `[x]`.
 
-        With a weighted defuzzifier, which replaces an output's `centroid`, it is a constant, else a set without width.
+        The term is a constant for a weighted defuzzifier, which replaces an output's `centroid`, else a set without
+        width.
         """
         if spec.get("defuzzifier", "centroid") == "centroid" and spec is self.draft.sides["outputs"].get(
             self.draft.names[variable]

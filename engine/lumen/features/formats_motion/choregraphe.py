@@ -96,8 +96,8 @@ class Flags(NamedTuple):
 def read_choregraphe(file: MotionFile, findings: ConversionFindings) -> JointCurves:
     """Return the curves of the timeline `file.timeline`, or of the only timeline if that name is empty.
 
-    `file.hands` are the robot's hands besides NAO's, whose keys are openings. Raises ForeignFileError if the file is no
-    behaviour, or if the timeline does not exist or must be chosen.
+    `file.hands` are the robot's hands besides NAO's, whose keys are openings. Raises ForeignFileError if the file is
+    not a behaviour, or if the timeline does not exist or is ambiguous.
     """
     root = parse_xml(file.name, file.content, most=MAX_CHOREGRAPHE_ELEMENTS)
     if local(root) not in ROOTS:
@@ -140,7 +140,7 @@ def is_choregraphe_list(content: bytes) -> bool:
 
 
 def choregraphe_list(content: bytes) -> str:
-    """Return a message: why a `.pml` can't be imported, and the files to import instead."""
+    """Return the message that a `.pml` can't be imported, with the files to import instead."""
     named = [e for e in parse_xml("", content).walk() if local(e) == "BehaviorDescription"]
     files = [f"{e.get('src')}/{e.get('xar', 'behavior.xar')}".strip("/") for e in named]
     instead = (

@@ -74,7 +74,7 @@ def _chosen(
 ) -> FunctionNode | None:
     """Return the function that contains the motion, or None if the module's own statements do.
 
-    Raises ForeignFileError if the function does not exist or must be chosen.
+    Raises ForeignFileError if the function does not exist or is ambiguous.
     """
     gestures = {name: function for name, function in own.all.items() if own.is_gesture(function.body)}
     if name:
@@ -102,7 +102,7 @@ def _chosen(
 def _tree(file: str, text: str) -> ast.Module:
     """Return the file's syntax tree; Python 2's `print` and `except` are accepted, since exports contain them.
 
-    Raises ForeignFileError if the file is not valid Python otherwise.
+    Raises ForeignFileError if the file is otherwise invalid.
     """
     for pattern, now in _OLD:
         text = pattern.sub(now, text)

@@ -391,7 +391,7 @@ def _is_posted(node: ast.AST) -> bool:
 
 
 def _handle(handle: Any) -> tuple[int, BezierHandle]:
-    """Return a handle's type, LINEAR if it is invalid, and (dt [s], da [rad]), (0, 0) unless it is BEZIER."""
+    """Return a handle's type and (dt [s], da [rad]). An invalid one is LINEAR; all except BEZIER have (0, 0)."""
     if isinstance(handle, list) and len(handle) == 3 and all(_is_number(part) for part in handle):
         return int(handle[0]), ((float(handle[1]), float(handle[2])) if handle[0] == BEZIER else (0.0, 0.0))
     return LINEAR, (0.0, 0.0)

@@ -1,4 +1,4 @@
-"""Finds a Python file's statements in order, marked if they may not run exactly once, and its functions."""
+"""Analyses a Python file: its statements in order, marked if they may not run exactly once, and its functions."""
 
 import ast
 import re
@@ -123,7 +123,7 @@ class OwnFunctions:
         return found
 
     def is_gesture(self, body: list[ast.stmt]) -> bool:
-        """Return whether statements, or functions that they call, move joints, or statements fill a motion's lists."""
+        """Return whether statements move joints, directly or through functions, or fill a motion's lists."""
         whole = [body, *(self.all[name].body for name in self.reached(body) if name in self.all)]
         return any(_moves(part) for part in whole) or lists_of(body) is not None
 
@@ -158,9 +158,9 @@ def _moves(body: list[ast.stmt]) -> bool:
 
 
 def lists_of(body: list[ast.stmt]) -> NamedLists | None:
-    """Return the variables for a motion's lists that statements set; None if there are none.
+    """Return the variables in which statements store a motion's lists; None if there are none.
 
-    They have the names of Choregraphe's export, or are returned as a tuple of three.
+    They are named as in Choregraphe's export, or returned as a tuple of three.
     """
     nodes = list(_inner(body))
     if set(USUAL_LISTS) <= {n.id for n in nodes if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Store)}:

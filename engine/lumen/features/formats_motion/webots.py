@@ -1,7 +1,7 @@
 """Reads Webots' `.motion` files, which contain a line of joint names, then a pose per line.
 
-V1.0 (Webots' reference manual, "Motion") is `#WEBOTS_MOTION,V1.0,JOINT,…`, then `MM:SS:mmm,NAME,ANGLE,…` in [rad], with
-`*` for a joint that does not move.
+V1.0 (Webots' reference manual, "Motion") is `#WEBOTS_MOTION,V1.0,JOINT,…`, then `MM:SS:mmm,NAME,ANGLE,…`, with angles
+in [rad], or `*` for a joint that does not move.
 
 V1.1 is written by teams of RoboCup's 3D league, and not supported by Webots. After `#WEBOTS_MOTION,V1.1`, the joint
 names follow on the same or the second line, joined by `%`. A pose is `play%ANGLE%…%DURATION`, with angles in [rad] and
@@ -126,7 +126,7 @@ def read_webots(file: MotionFile, findings: ConversionFindings) -> JointCurves:
 
 
 def _joints(file: str, lines: list[list[Cell]]) -> list[Cell]:
-    """Remove the heading from the lines, and return its joints; some tools write their names into the second line.
+    """Remove the heading from the lines and return its joints, which some tools write into the second line.
 
     Raises ForeignFileError if the heading is invalid.
     """

@@ -97,7 +97,7 @@ def _roles(model: RobotModel, roles: GuessedRoles) -> Iterator[str]:
 
 
 def _given(roles: GuessedRoles, prefix: str, names: Sequence[str]) -> dict[str, str]:
-    """Return the joints for those of the roles under `prefix` that have one, as YAML."""
+    """Return the joint of each role under `prefix`, as YAML; roles without a joint are left out."""
     found = {name: path for name in names if (path := f"{prefix}.{name}") in roles.joints}
     return {
         name: f"{{joint: {roles.joints[path]}, reversed: true}}" if path in roles.reversed else roles.joints[path]

@@ -36,7 +36,7 @@ def robot_body(
 
 
 def _converted(path: Path, content: bytes, output: Path, title: str) -> tuple[dict[Path, bytes], list[Diagnostic]]:
-    """Return a URDF's MJCF and meshes by path, or nothing if it can't be converted, and findings about losses."""
+    """Return a URDF's MJCF and meshes by path, empty if the conversion fails, and findings about losses."""
     here = Place(str(path), 1, 1)
     try:
         from lumen.features.formats_robots.urdf_conversion import urdf_as_mjcf

@@ -44,7 +44,7 @@ class Defaults:
             self._read(inner, known, name)
 
     def has(self, name: str) -> bool:
-        """Return whether the model has a class with this name; the main class has an empty name."""
+        """Return whether the model has a class with this name; an empty name is the main class."""
         return not name or name in self._classes
 
     def whole(self, element: XmlElement, childclass: str = "") -> XmlElement:
@@ -61,7 +61,7 @@ _ORIGIN = (0.0, 0.0, 0.0)
 SAME_ANGLE = 1e-3
 """The tolerance for rounded angles [rad]."""
 SAME_TORQUE = 1e-3
-"""The relative difference between the torques in both directions that is ignored."""
+"""The relative difference between the torques in the two directions that is ignored."""
 _FOVY = 45.0
 _EQUAL = (0.0, 1.0, 0.0, 0.0, 0.0)
 """The coefficients of a joint whose angle equals another joint's."""
@@ -273,7 +273,7 @@ class _MjcfReader:
         return min((torque for torque in most if torque > 0), default=None)
 
     def uneven(self, element: XmlElement, spans: list[tuple[float, ...]]) -> None:
-        """Report torques that differ between both directions."""
+        """Report torques that differ between the two directions."""
         for low, high in spans:
             if abs(low + high) > SAME_TORQUE * max(abs(low), abs(high)):
                 message = (

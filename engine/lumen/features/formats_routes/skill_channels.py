@@ -62,7 +62,7 @@ def _orders(skills: Mapping[str, VerbRow]) -> dict[str, Any]:
 
 
 def _answers(modules: Mapping[str, Mapping[str, VerbRow]]) -> dict[str, Any]:
-    """Return the JSON Schema of modules' answers."""
+    """Return the JSON Schema of the modules' answers."""
     results = [
         {**row.result, "type": "object", "title": f"The result of {name}"}
         for skills in modules.values()

@@ -1,4 +1,4 @@
-"""Infers from an expression its value's kind, and which event fields are present."""
+"""Infers the kind of an expression's value, and the event fields that must be present."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -88,7 +88,7 @@ def kind(node: ExpressionNode, context: Mapping[str, str]) -> str:
 
 
 def is_float(node: ExpressionNode) -> bool:
-    """Return whether an expression is certainly a float: then `/` keeps the fraction."""
+    """Return whether an expression is certainly a float, for which `/` keeps the fraction."""
     match node:
         case Literal(value=value):
             return isinstance(value, float)
@@ -100,5 +100,5 @@ def is_float(node: ExpressionNode) -> bool:
 
 
 def kinds_of(context: Mapping[str, Any], types: Mapping[str, Any]) -> dict[str, str]:
-    """Return the kinds of the first values of context keys, without keys that are None or in `types`."""
+    """Return the kinds of the context keys' first values, without keys that are None or in `types`."""
     return {key: kind_of(value) for key, value in context.items() if value is not None and key not in types}

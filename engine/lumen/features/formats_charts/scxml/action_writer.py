@@ -106,7 +106,7 @@ class ScxmlActionWriter:
                 yield from self.block(choice.otherwise)
 
     def data(self, value: ComputedValue) -> list[XmlTag]:
-        """Return an event's data as elements: a `<param>` for each entry if it is a map with keys, else a `<content>`.
+        """Return an event's data as elements: a `<param>` for each entry of a non-empty map, else one `<content>`.
 
         Raises ScriptError if ECMAScript can't express a value.
         """

@@ -35,12 +35,12 @@ class ScxmlStateTree:
         self.events = {
             f"done.state.{id}": f"done.state.{node.name}" for id, node in self.by_id.items() if id != node.name != ""
         }
-        """Lumen's end events, by the document's, for states whose names differ in Lumen."""
+        """Lumen's end events, by the document's end events, for states whose names differ."""
 
     def _top(self) -> XmlElement:
-        """Return the `<scxml>`, or the state as which Lumen wrote the root.
+        """Return the `<scxml>`, or the state that Lumen wrote for a behaviour's root.
 
-        Such a state loses its elements that only end the document.
+        Children of such a state that only end the document are removed.
         """
         states = [state for state in self.scxml.of(*STATES) if not _ends_document(state)]
         if len(states) != 1 or states[0].get(f"{{{LUMEN_NAMESPACE}}}root") != "true":

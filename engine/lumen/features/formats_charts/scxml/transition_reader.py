@@ -30,7 +30,7 @@ class ScxmlTransitionReader:
         self.outline, self.contents, self.findings = outline, contents, findings
 
     def of(self, node: ForeignState, afters: dict[str, str]) -> dict[str, Any]:
-        """Return a state's transitions, by the keys of Lumen; `afters` maps the events of Lumen's timers to delays."""
+        """Return a state's transitions under Lumen's keys; `afters` maps the events of Lumen's timers to delays."""
         always: list[TransitionData] = []
         after: dict[str, list[TransitionData]] = {}
         rows: list[tuple[str, TransitionData]] = []
@@ -88,7 +88,7 @@ class ScxmlTransitionReader:
     def _done(
         self, node: ForeignState, rows: list[tuple[str, TransitionData]]
     ) -> tuple[dict[str, Any], list[tuple[str, TransitionData]]]:
-        """Return `onDone` and `onError`, if they can only mean the same as `rows`, and the remaining rows."""
+        """Return `onDone` and `onError` for rows that can have no other meaning, and the remaining rows."""
         name = node.name or self.outline.title
         kind = "do" if not regular(node) else "state"
         has_do = bool(list(node.source.of(f"{{{LUMEN_NAMESPACE}}}do")))

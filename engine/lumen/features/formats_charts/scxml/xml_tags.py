@@ -11,7 +11,7 @@ _QUOTES = {'"': "&quot;", "\n": "&#10;", "\t": "&#9;", "\r": "&#13;"}
 
 @dataclass
 class XmlTag:
-    """An element to write; attributes with empty values are left out, and so is the text beside children."""
+    """An element to write; empty attributes, and text beside children, are left out."""
 
     name: str
     attributes: Mapping[str, str] = field(default_factory=dict)

@@ -1,4 +1,4 @@
-"""Reads XState's invocations: those that Lumen wrote completely, of others only the transitions at their end."""
+"""Reads XState's invocations that Lumen wrote, and the transitions at the end of any others."""
 
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
@@ -98,7 +98,10 @@ class XStateInvokeReader:
         return data
 
     def _rows(self, state: XStateNode) -> Iterator[tuple[int, NodePath, Mapping[str, Any]]]:
-        """Yield the number, place and object of each item of `invoke`, which is a name in version 4; report others."""
+        """Yield the number, place and object of each item of `invoke`; report invalid items.
+
+        A name alone (version 4) becomes an object with this `src`.
+        """
         data, where = state.source.get("invoke"), (*state.where, "invoke")
         rows = [((*where, i), row) for i, row in enumerate(data)] if isinstance(data, list) else [(where, data)]
         for number, (place, row) in enumerate(rows):

@@ -199,7 +199,7 @@ class _XStateReader:
         return {"target": self.transitions.named(state, list(home.regular))}
 
     def _initial(self, state: XStateNode) -> str:
-        """Return a reference to the first state, or to an additional state that runs actions before.
+        """Return a reference to the state entered first, or to an additional state that first runs actions.
 
         An invalid target is reported and replaced by the first inner state.
         """
@@ -298,7 +298,7 @@ class _XStateReader:
     def _table(self, state: XStateNode, key: str, named: str) -> list[tuple[str, NodePath, Any]]:
         """Return the keys of `on` or `after`, their places and transitions; report invalid items.
 
-        In version 4, a list of transitions has the keys under `named`.
+        Version 4 also allows a list of transitions, each with its key under `named`.
         """
         table, where = state.source.get(key), (*state.where, key)
         if isinstance(table, dict):

@@ -54,7 +54,7 @@ def declared_kind(data: Mapping[str, Any]) -> str:
 
 
 class XStateStateTree:
-    """The tree of states under `root`, and all states with an id by that id."""
+    """The tree of states under `root`; `by_id` has the states with an id."""
 
     def __init__(self, source: JsonSource, title: str, findings: ConversionFindings) -> None:
         self.source, self.findings = source, findings

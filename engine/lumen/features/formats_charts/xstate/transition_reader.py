@@ -25,7 +25,8 @@ class XStateTransitionReader:
     ) -> list[TransitionData]:
         """Convert a target, an object or a list of these to transitions; report and leave out invalid ones.
 
-        An `eventless` transition without a guard and a target is invalid. If `heard`, a row has its key as `hears`.
+        An `eventless` transition without a guard and a target is invalid. With `heard`, a guard that Lumen wrote for a
+        row of `hears` becomes the key `hears`.
         """
         rows = [((*where, i), row) for i, row in enumerate(data)] if isinstance(data, list) else [(where, data)]
         found = [self._row(state, place, {} if row is None else row, heard) for place, row in rows]
@@ -147,7 +148,7 @@ class XStateTransitionReader:
         return row
 
     def _parallel(self, state: XStateNode, where: NodePath, targets: list[XStateNode], reenter: bool) -> None:
-        """Report a transition whose domain would be a parallel state: by W3C's rule, it leaves and enters that, too."""
+        """Report a transition whose domain is a parallel state: by W3C's rule, it also leaves and enters that state."""
         domain: XStateNode | None = (
             state if not reenter and all(t is state or t.lies_below(state) for t in targets) else None
         )

@@ -1,4 +1,4 @@
-"""Import of FuzzyLite Language (FLL), which describes engines, as controller files, and export of controllers."""
+"""Import and export of controllers as engines in FuzzyLite Language (FLL)."""
 
 from lumen.features.formats_fuzzy.fll.reader import read_fll
 from lumen.features.formats_fuzzy.fll.writer import write_fll

@@ -1,4 +1,4 @@
-"""A controller file under construction: another tool's variables, terms and rules, with names valid in Lumen's."""
+"""A controller file under construction, with another tool's variables, terms and rules under valid names."""
 
 import re
 from collections.abc import Callable, Collection, Mapping
