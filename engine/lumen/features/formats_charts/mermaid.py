@@ -13,7 +13,7 @@ def mermaid(machine: MachineDefinition) -> str:
     """Return the diagram's text, ending with a newline.
 
     States have the ids `s0`, `s1`, … in document order and their keys as labels, since Mermaid accepts few characters
-    in an id. The label of a state without children also lists transitions without a target. An invoked behaviour is
+    in an id. If a state has no children, its label also lists transitions without a target. An invoked behaviour is
     drawn once, as a region inside its state; further invocations are boxes with its name.
     """
     return "\n".join(["stateDiagram-v2", *_MermaidDrawing(machine).lines()]) + "\n"

@@ -94,7 +94,7 @@ def reach(kind: str, parameters: list[float]) -> list[float]:
     """Return the x values of a shape's ends as in jFuzzyLogic (`estimateUniverse`); empty for shapes that it lacks.
 
     A gaussian ends 4 sigma from its mean, a bell at a membership of 0.001, and a sigmoid 9 / slope from its inflection.
-    The ends of a piecewise shape are among its parameters, which are all returned.
+    For a piecewise shape, all parameters are returned.
     """
     match kind, parameters:
         case "gaussian", [mean, sigma, *_]:

@@ -195,7 +195,7 @@ class _FisReader:
         return self.draft.result()
 
     def known(self, section: FisSection) -> None:
-        """Report a section's unused and repeated keys."""
+        """Report a section's unknown and repeated keys."""
         if section.kind == "rules":
             return
         table, seen = KNOWN[f"[{section.kind.capitalize()}]"], set[str]()
@@ -329,9 +329,9 @@ class _FisReader:
         return rule
 
     def propositions(self, side: str, numbers: list[float], line: FisLine) -> list[str] | None:
-        """Return `variable is term`, with its hedges, for each number that is not 0.
+        """Return `variable is term`, with hedges, for each number that is not 0.
 
-        Report it and return None if a number has no term, or needs a term that can't be derived.
+        Report it and return None if a number's term does not exist or can't be derived.
         """
         found = []
         for variable, number in zip(self.order[side], numbers, strict=True):

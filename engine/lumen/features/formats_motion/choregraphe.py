@@ -185,7 +185,7 @@ def _way(root: XmlElement, wanted: XmlElement) -> list[XmlElement]:
 def _flags(timeline: XmlElement, findings: ConversionFindings) -> Flags:
     """Return a timeline's range of played frames and its frame rate; report invalid flags.
 
-    By default, all frames from frame 1 on are played.
+    By default, all frames from 1 on are played.
     """
     found = {}
     for flag, none in (("start_frame", 1.0), ("end_frame", -1.0)):

@@ -94,7 +94,7 @@ class ScriptReading:
     def _items(self, loop: ast.For) -> list[ast.expr] | None:
         """Return the values of a loop's variable, one per iteration.
 
-        Return None if they are not literal or too many, or if an iteration can end early.
+        Return None if they are not literal, too many, or an iteration can end early.
         """
         if has_jumps(loop):
             return None
@@ -120,7 +120,7 @@ class ScriptReading:
         return rounds
 
     def enter(self, function: FunctionNode, given: Mapping[str, Any], around: Branch = Branch.ALWAYS) -> Any:
-        """Follow a function with its own variables; return its result, or None if it is unknown."""
+        """Follow a function with its own variables; return its result, or None."""
         outer, shared = self.values, self.shared
         self.values, self.shared = {**self.globals, **self._defaults(function), **given}, set()
         self.entered.append(function.name)

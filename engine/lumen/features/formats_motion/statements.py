@@ -102,7 +102,7 @@ class OwnFunctions:
         self.classes = {node.name for node in classes}
 
     def called(self, call: ast.Call) -> FunctionNode | None:
-        """Return the file's function that a call refers to, or None if it refers to none."""
+        """Return the file's function that a call refers to, or None."""
         match call.func:
             case ast.Name(id=name):
                 return self.plain.get(name)

@@ -94,7 +94,7 @@ class _Guesser:
         return roles
 
     def role(self, joint: ModelJoint, side: str, limb: str, turn: str) -> None:
-        """Assign a joint to its role, unless another joint has it; the axis determines a turn missing from the name."""
+        """Assign a joint to its role, unless another joint has it; a missing turn follows from the axis."""
         turn = turn or _dominant(joint)
         path = {
             "head": f"head.{turn}",

@@ -20,13 +20,13 @@ class ModelJoint:
     axis: Vector
     """The axis in the robot's frame, with all joints at zero."""
     low: float | None = None
-    """The lower limit [rad], or None without limits."""
+    """The lower limit [rad], None without limits."""
     high: float | None = None
-    """The upper limit [rad], or None without limits."""
+    """The upper limit [rad], None without limits."""
     speed: float | None = None
-    """The greatest speed [rad/s], or None if unknown."""
+    """The greatest speed [rad/s], None if unknown."""
     effort: float | None = None
-    """The greatest torque [N m], or None if unknown."""
+    """The greatest torque [N m], None if unknown."""
     follows: str = ""
     """The joint whose angle this joint equals, since one motor moves both; empty for none."""
     servo: bool = False

@@ -21,7 +21,7 @@ MAX_JOINTS = 1_000
 
 
 def begins_robot(content: bytes) -> bool:
-    """Return whether XML is a robot's model, judging by its first element."""
+    """Return whether XML is a robot's model, by its first element."""
     start = content.removeprefix(b"\xef\xbb\xbf")[:100_000].lstrip()
     while before := _BEFORE.match(start):
         start = start[before.end() :].lstrip()

@@ -83,7 +83,7 @@ def _sort_geoms(spec: mujoco.MjSpec) -> None:
 def _take_meshes(root: ElementTree.Element, folder: Path) -> tuple[dict[str, bytes], dict[int, str]]:
     """Rename the meshes in the URDF, and remove the shapes of unavailable ones.
 
-    Return the contents of the meshes by new name, and the reasons for losses by index.
+    Return the meshes by new name, and the reasons for losses by index.
     """
     meshes, lost, names = dict[str, bytes](), dict[int, str](), dict[Path, str]()
     numbers = {mesh: number for number, mesh in enumerate(root.iter("mesh"))}
@@ -123,8 +123,8 @@ def _found(filename: str, folder: Path) -> tuple[Path | None, str]:
 def _candidates(inner: str, folder: Path) -> Iterator[Path]:
     """Yield possible paths of a mesh in the URDF's folder and up to four folders above it.
 
-    In each folder, they are the path as written, and without its first one or two folders. The last two are the bare
-    file name in `meshes/` and in the URDF's folder.
+    Each path is tried as written, and without its first one or two folders. The last ones are the bare file name in
+    `meshes/` and beside the URDF.
     """
     here = folder.resolve()
     parts = [part for part in Path(inner).parts if part != ".."]

@@ -55,7 +55,7 @@ UNKNOWN_KIND = ""
 
 
 def kind(node: ExpressionNode, context: Mapping[str, str]) -> str:
-    """Return the kind of a Lumen expression's value, or UNKNOWN_KIND; `context` has the keys whose kind is constant."""
+    """Return the kind of a Lumen expression's value, or UNKNOWN_KIND; `context` maps keys to constant kinds."""
     match node:
         case Literal(value=value):
             return kind_of(value)

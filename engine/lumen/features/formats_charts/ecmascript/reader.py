@@ -48,12 +48,12 @@ class ScriptNames:
 
 
 def read_condition(source: str, names: ScriptNames) -> str:
-    """Return a Lumen expression that is true if the source is truthy. Raises ScriptError if Lumen can't express it."""
+    """Return a Lumen expression that is true if the source is truthy. Raises ScriptError if there is none."""
     return printed(ScriptTranslator(names).condition(parse_script(source)))
 
 
 def read_value(source: str, names: ScriptNames) -> ExpressionNode:
-    """Return a Lumen tree with the same value as the source. Raises ScriptError if Lumen can't express it."""
+    """Return a Lumen tree with the same value as the source. Raises ScriptError if there is none."""
     tree = ScriptTranslator(names).value(parse_script(source))
     printed(tree)
     return tree
@@ -73,7 +73,7 @@ def printed(tree: ExpressionNode) -> str:
 
 
 class ScriptTranslator:
-    """Translates one expression; `present` holds the event fields known to be present at the current operand."""
+    """Translates one expression; `present` has the event fields known to be present at the current operand."""
 
     def __init__(self, names: ScriptNames) -> None:
         self.names = names

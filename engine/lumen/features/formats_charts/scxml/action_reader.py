@@ -22,9 +22,9 @@ _STATEMENT = re.compile(
 
 
 def assignments(source: str) -> list[tuple[str, str]] | None:
-    """Return the names and values that a script such as `x = 1; y += x; z++` assigns, in order.
+    """Return the names and values that a script like `x = 1; y += x; z++` assigns, in order.
 
-    Return None if it contains quotes or anything except assignments.
+    Return None if it contains quotes or anything else.
     """
     text = re.sub(r"//[^\n]*|/\*.*?\*/", "", source, flags=re.DOTALL)
     if "'" in text or '"' in text:
@@ -49,7 +49,7 @@ _WAY = re.compile(r"[A-Za-z_]\w*(\.[A-Za-z_]\w*)*", re.ASCII)
 
 
 class LeftOutError(Exception):
-    """An element has no counterpart in Lumen; the message and the hint are for the document's author."""
+    """An element has no counterpart in Lumen; the message and hint are for the document's author."""
 
     def __init__(self, message: str, hint: str = "") -> None:
         super().__init__(message)

@@ -139,7 +139,7 @@ class _ScxmlReader:
         return data if "target" in data else data | self._remembered(node)
 
     def _remembered(self, node: ForeignState) -> dict[str, Any]:
-        """Return the `target` of a history without a valid one, which SCXML does not allow.
+        """Return the default `target` of a history that lacks the one that SCXML requires.
 
         It is the parent's first regular child, or all of them in a parallel state.
         """
@@ -327,7 +327,7 @@ class _ScxmlReader:
 class _ActiveTogether:
     """A set of states; `meets` returns whether a given state can be active together with any of them.
 
-    It can if one contains the other, or if they are in different regions of a parallel state.
+    Two states can if one contains the other, or if they are in different regions of a parallel state.
     """
 
     def __init__(self) -> None:

@@ -9,7 +9,7 @@ STATES = ("state", "parallel", "final", "history")
 
 
 def regular(node: ForeignState) -> list[ForeignState]:
-    """Return the children that can be active, which are all except histories."""
+    """Return the children that can be active: all except histories."""
     return [child for child in node.children if child.source.tag != "history"]
 
 

@@ -155,7 +155,7 @@ class ScxmlTransitionReader:
         return found
 
     def named(self, source: ForeignState, targets: list[ForeignState], *, inside: bool = False) -> Any:
-        """Return the source's reference to its target, or a list of references to several targets."""
+        """Return the source's reference to its target, or a list for several targets."""
         names = [source.calls(target, self.outline.title, inside=inside) for target in targets]
         return names[0] if len(names) == 1 else names
 

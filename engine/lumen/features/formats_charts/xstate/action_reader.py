@@ -266,10 +266,7 @@ def _logged(text: str) -> ActionData:
 
 
 def shown_name(kind: str, data: Any) -> str:
-    """Return the name of an action, guard or actor, followed by its parameters as JSON.
-
-    Version 4 has the parameters beside `type`, not in `params`.
-    """
+    """Return the name of an action, guard or actor, and its parameters as JSON, which version 4 has beside `type`."""
     params = data.get("params") if isinstance(data, dict) else None
     rest = data.items() if isinstance(data, dict) else ()
     beside = {key: value for key, value in rest if key not in ("type", "params")}

@@ -183,9 +183,9 @@ class _XStateReader:
         return data if "target" in data else data | self._default(state)
 
     def _default(self, state: XStateNode) -> dict[str, Any]:
-        """Return the `target` of a history without a valid one: the states in which its parent begins.
+        """Return the default `target` of a history: the states in which its parent begins.
 
-        If its parent begins with a history, that is reported, and the target is the first regular child.
+        If the parent begins with a history, report that and return the first regular child.
         """
         home = state.parent
         assert isinstance(home, XStateNode)  # the machine itself is never read as a history
@@ -324,7 +324,7 @@ class _XStateReader:
 
 
 def _lumen(state: XStateNode) -> Mapping[str, Any]:
-    """Return `meta.lumen`, or an empty map if there is none."""
+    """Return `meta.lumen`, or an empty map."""
     meta = state.source.get("meta")
     own = meta.get("lumen") if isinstance(meta, dict) else None
     return own if isinstance(own, dict) else {}

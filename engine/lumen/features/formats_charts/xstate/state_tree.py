@@ -21,7 +21,7 @@ class XStateNode(ForeignState):
     named: "dict[str, XStateNode]"
     """The children, by their keys in the file."""
     regular: "list[XStateNode]"
-    """The children that can be active, which are all except histories."""
+    """The children that can be active: all except histories."""
 
     @property
     def kind(self) -> str:

@@ -25,8 +25,8 @@ class XStateTransitionReader:
     ) -> list[TransitionData]:
         """Convert a target, an object or a list of these to transitions; report and leave out invalid ones.
 
-        An `eventless` transition without a guard and a target is invalid. With `heard`, a guard that Lumen wrote for a
-        row of `hears` becomes the key `hears`.
+        An `eventless` transition without a guard and a target is invalid. With `heard`, a row of `hears` has its key as
+        `hears`.
         """
         rows = [((*where, i), row) for i, row in enumerate(data)] if isinstance(data, list) else [(where, data)]
         found = [self._row(state, place, {} if row is None else row, heard) for place, row in rows]
@@ -121,7 +121,7 @@ class XStateTransitionReader:
         return found
 
     def named(self, state: XStateNode, targets: list[XStateNode]) -> Any:
-        """Return the state's reference to its target, or a list of references to several targets."""
+        """Return the state's reference to its target, or a list for several targets."""
         names = [state.calls(target, self.outline.title) for target in targets]
         return names[0] if len(names) == 1 else names
 

@@ -157,7 +157,7 @@ class ControllerDraft:
         return next((ours for ours in found if term in self.terms[ours]), found[0] if found else "")
 
     def _unknown(self, mention: Mention) -> RuleWord | None:
-        """Return the word in a proposition that is an unknown variable or term; None if both are known."""
+        """Return the word in a proposition that is an unknown variable or term, or None."""
         variable, term = mention.variable, mention.term
         name = self._meant(variable.text, term.text if term else "", concluded=mention.concluded)
         if not name:
