@@ -247,7 +247,7 @@ class ScriptReading:
                     self.findings.lost(self._place(statement), message, "write the numbers as literals")
 
     def _followed(self, statement: ast.stmt) -> bool:
-        """Follow an assignment or an `append`; return False if the statement is something else or must be computed."""
+        """Follow an assignment or an `append`; return False if the statement can't be followed."""
         match statement:
             case ast.Assign(targets=targets, value=value) if all(isinstance(t, ast.Name) for t in targets):
                 for target in targets:

@@ -14,7 +14,7 @@ WIDTH, HEIGHT = 320, 240
 SPEED, TURN = 0.5, 1.0
 """The guessed speeds of a base on wheels [m/s, rad/s]."""
 GIVE = 0.1
-"""The distance from the goal [rad] at which an added servo gives its full torque."""
+"""The distance from the goal at which an added servo applies its full torque [rad]."""
 CIRCLE = pi
 """The range in each direction [rad] of a joint without limits."""
 

@@ -210,7 +210,7 @@ class ScriptTranslator:
         return Binary(sign, left, right)
 
     def _renamed(self, node: Binary) -> Binary:
-        """Replace an event name that is compared with `_event.name` by Lumen's; return other comparisons unchanged."""
+        """Return a comparison with `_event.name` using Lumen's event name, and any other comparison unchanged."""
         name = FieldAccess(EVENT, "name")
         match node.left, node.right:
             case left, Literal(value=str() as event) if left == name:

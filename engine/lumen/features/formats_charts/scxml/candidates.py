@@ -49,7 +49,7 @@ def _heads(descriptors: set[str]) -> dict[str, str]:
 
 
 class _DescriptorOrder:
-    """The positions of the descriptors so far, and of the last more specific descriptor after each."""
+    """The positions of the descriptors so far, and of the last more specific descriptor for each."""
 
     def __init__(self) -> None:
         self.place: dict[str, int] = {}

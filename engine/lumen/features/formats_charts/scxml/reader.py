@@ -333,7 +333,7 @@ class _ActiveTogether:
     def __init__(self) -> None:
         self._states: set[ForeignState] = set()
         self._around: dict[ForeignState, set[ForeignState]] = {}
-        """The ancestors of the states, each with its children that lead to them."""
+        """The ancestors of the states, each with its children on the path to a state."""
 
     def add(self, state: ForeignState) -> None:
         self._states.add(state)

@@ -128,7 +128,8 @@ class XStateTransitionReader:
     def _way(self, state: XStateNode, where: NodePath, targets: list[XStateNode], reenter: bool) -> TransitionData:
         """Return `target` and `reenter`, if needed.
 
-        Without `reenter`, a transition to its own state has no target, or the initial child of a compound state.
+        Without `reenter`, a transition to its own state has no target if the state is atomic, and the initial child if
+        it is compound.
         """
         if targets == [state] and not reenter and state.kind == "atomic":
             return {}

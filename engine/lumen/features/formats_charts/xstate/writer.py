@@ -68,7 +68,7 @@ class _XStateWriter:
     def _begin(self, state: State, data: dict[str, Any]) -> dict[str, Any]:
         """Set `initial` in `data`, and return the states that must be added, by key.
 
-        An added state immediately enters initial states that are not a single child.
+        If the initial states are not a single child, an added state immediately enters them.
         """
         if state.kind is not StateKind.COMPOUND:
             return {}
