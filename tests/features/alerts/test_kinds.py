@@ -146,7 +146,7 @@ def test_a_part_that_gave_up(hall: Hall) -> None:
     for part in shown.node.parts:
         part.helpless("the thread `lumen-x` failed 5 times, at last on what Ani said")
     assert (
-        hall.told("crashed") == "a part of Lumen failed. The robot rests, because nobody could have stopped it any more"
+        hall.told("crashed") == "a part of Lumen failed. The robot rests, because no one could have stopped it"
     )
 
 

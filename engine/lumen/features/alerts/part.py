@@ -201,7 +201,7 @@ class AlertPart(Part, Observer):
 
     def helpless(self, reason: str) -> None:
         """Report that the robot rests because a part that is needed to stop it has failed."""
-        self._desk("crashed", "a part of Lumen failed. The robot rests, because nobody could have stopped it any more")
+        self._desk("crashed", "a part of Lumen failed. The robot rests, because no one could have stopped it")
 
     def part_stopped(self, part: str) -> None:
         """Report that a part failed and is not running."""
