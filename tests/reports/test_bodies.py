@@ -132,6 +132,7 @@ def test_unread_parts_of_a_urdf_are_listed(old: str, new: str, message: str) -> 
     [
         ("range=", "rang=", "`rang` of `<joint>` is left out"),
         ('angle="radian"', 'angle="radians"', "`angle` is `radians`: it is read as `degree`"),
+        ("<compiler", '<compiler autolimits="yes"', "`autolimits` is `yes`: it is read as `true`"),
         ('limited="true"', 'limited="yes"', "`limited` is `yes`: it is read as `auto`"),
         ('joint class="arm"', 'joint class="amr"', "the class `amr` does not exist"),
         ("<site", "<sight", "`<sight>` in `<body>` is left out"),

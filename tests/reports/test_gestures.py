@@ -112,6 +112,14 @@ def test_unread_parts_of_a_xar_are_listed(old: str, new: str, message: str) -> N
     assert message in [d.message for d in found]
 
 
+@pytest.mark.parametrize("wrong", ['side="left" abscissaParam="5"', 'side="left" abscissaParam="x"'])
+def test_a_tangent_that_is_left_out_does_not_bend_the_curve(wrong: str) -> None:
+    tangent = f'value="30"><Tangent interpType="bezier" {wrong} ordinateParam="40" /></Key>'
+    keys, found = read("box-library.xar", 'value="30" />', tangent)
+    assert any(d.message.startswith("a tangent is left out") for d in found)
+    assert keys == read("box-library.xar", "", "")[0]
+
+
 def times(keys: list[dict[str, Any]], joint: str) -> dict[str, float]:
     """Return a joint's angles [deg] by their times."""
     return {key["at"]: key[joint] for key in keys if joint in key}

@@ -321,17 +321,19 @@ def _factor(curve: XmlElement, findings: ConversionFindings, *, hand: bool) -> f
 
 
 def _handle(tangent: XmlElement | None, fps: float, factor: float, findings: ConversionFindings) -> BezierHandle:
-    """Return a Bezier tangent's (dt [s], da [rad]), or (0, 0) for any other; report invalid parameters."""
+    """Return a Bezier tangent's (dt [s], da [rad]); (0, 0) for any other, and for invalid parameters, reported."""
     if tangent is None or tangent.get("interpType") != "bezier":
         return 0.0, 0.0
     frames, value = (number(tangent.get(name, "0")) for name in ("abscissaParam", "ordinateParam"))
     if frames is None or value is None:
         findings.lost(tangent.place, "a tangent is left out: `abscissaParam` and `ordinateParam` must be numbers")
-    elif (frames > 0) == (tangent.get("side") == "left") and frames:
+        return 0.0, 0.0
+    if (frames > 0) == (tangent.get("side") == "left") and frames:
         findings.lost(
             tangent.place, "a tangent is left out: `abscissaParam` must be below 0 on the left, above 0 on the right"
         )
-    return ((frames or 0.0) / fps, (value or 0.0) * factor)
+        return 0.0, 0.0
+    return frames / fps, value * factor
 
 
 def _under(element: XmlElement, tag: str) -> Iterator[XmlElement]:

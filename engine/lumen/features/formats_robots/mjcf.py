@@ -79,17 +79,17 @@ class _MjcfReader:
         self.root, self.file, self.findings = root, file, findings
         self.numbers, self.defaults = Numbers(findings), Defaults(root)
         compiler = {key: value for element in root.of("compiler") for key, value in element.attributes.items()}
-        self.angle = 1.0 if compiler.get("angle") == "radian" else radians(1.0)
+        angle = self.one_of(root, compiler.get("angle", "degree"), "angle", ("radian", "degree"))
+        self.angle = 1.0 if angle == "radian" else radians(1.0)
         self.sequence = compiler.get("eulerseq", "xyz")
-        self.one_of(root, compiler.get("angle", "degree"), "angle", ("radian", "degree"))
-        self.one_of(root, compiler.get("autolimits", "true"), "autolimits", ("true", "false"))
+        autolimits = compiler.get("autolimits", "true")
+        self.autolimits = self.one_of(root, autolimits, "autolimits", ("false", "true")) == "true"
         if len(self.sequence) != len(_ORIGIN) or not set(self.sequence.lower()) <= set(AXES):
             findings.lost(
                 root.place,
                 f"`eulerseq` can't be `{self.sequence[:20]}`",
                 "write three of x, y and z, in capitals for fixed axes",
             )
-        self.autolimits = compiler.get("autolimits", "true") != "false"
         self.motors: dict[str, XmlElement] = {}
         self.followers: dict[str, str] = {}
         self.joints: list[ModelJoint] = []
@@ -97,11 +97,13 @@ class _MjcfReader:
         self.cameras: list[ModelCamera] = []
         self.sites: dict[str, str] = {}
 
-    def one_of(self, element: XmlElement, said: str, name: str, words: tuple[str, ...]) -> None:
-        """Report a value that MuJoCo does not accept."""
-        if said not in words:
-            message = f"`{name}` is `{said[:40]}`: it is read as `{words[-1]}`"
-            self.findings.lost(element.place, message, f"write one of {', '.join(words)}")
+    def one_of(self, element: XmlElement, said: str, name: str, words: tuple[str, ...]) -> str:
+        """Return the value of an attribute; report one that MuJoCo does not accept, and return the last of `words`."""
+        if said in words:
+            return said
+        message = f"`{name}` is `{said[:40]}`: it is read as `{words[-1]}`"
+        self.findings.lost(element.place, message, f"write one of {', '.join(words)}")
+        return words[-1]
 
     def classed(self, element: XmlElement, childclass: str = "") -> XmlElement:
         """Return the element with the defaults of its class; report a missing class."""
@@ -224,8 +226,7 @@ class _MjcfReader:
         An empty range is reported and ignored.
         """
         span = self.numbers.all(joint, "range", 2)
-        limited = joint.get("limited", "auto")
-        self.one_of(joint, limited, "limited", ("true", "false", "auto"))
+        limited = self.one_of(joint, joint.get("limited", "auto"), "limited", ("true", "false", "auto"))
         if not span or limited == "false" or (limited == "auto" and not self.autolimits):
             return None, None
         if span[0] >= span[1]:

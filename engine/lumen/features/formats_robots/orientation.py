@@ -1,7 +1,7 @@
 """Reads numbers in URDF and MJCF, and computes nested frames from positions and quaternions (w, x, y, z)."""
 
 from dataclasses import dataclass
-from math import cos, hypot, isfinite, sin
+from math import atan2, cos, hypot, isfinite, pi, sin
 
 from lumen.project.formats.conversion_findings import ConversionFindings
 from lumen.project.formats.xml_elements import XmlElement
@@ -46,6 +46,11 @@ def rotated(q: Quaternion, v: Vector) -> Vector:
     return a, b, c
 
 
+def dot(a: Vector, b: Vector) -> float:
+    """Return the scalar product."""
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
 def turn(axis: Vector, angle: float) -> Quaternion:
     """Return the rotation about an axis by an angle [rad]; the identity if the axis has no length."""
     length = hypot(*axis)
@@ -70,7 +75,8 @@ def euler(angles: Vector, sequence: str = "xyz") -> Quaternion:
 def between(start: Vector, end: Vector) -> Quaternion:
     """Return the smallest rotation from one direction to another.
 
-    It is half a turn about x for opposite directions, and the identity if a direction has no length.
+    For opposite directions it is half a turn about x, or about y if `start` is nearer to x. It is the identity if a
+    direction has no length.
     """
     lengths = hypot(*start) * hypot(*end)
     if not lengths:
@@ -78,15 +84,17 @@ def between(start: Vector, end: Vector) -> Quaternion:
     (a, b, c), (d, e, f) = start, end
     w = lengths + a * d + b * e + c * f
     if w < 1e-9 * lengths:
-        return 0.0, 1.0, 0.0, 0.0
+        axis = AXES[min("xyz", key=lambda name: abs(dot(AXES[name], start)))]
+        share = dot(axis, start) / dot(start, start)
+        return turn((axis[0] - share * a, axis[1] - share * b, axis[2] - share * c), pi)
     return unit((w, b * f - c * e, c * d - a * f, a * e - b * d))
 
 
 def of_axes(x: Vector, y: Vector) -> Quaternion:
-    """Return the rotation to the frame with these x and y axes."""
+    """Return the rotation to the frame with this x axis, whose y axis is `y` without its share along `x`."""
     first = between(AXES["x"], x)
-    up = rotated(first, AXES["y"])
-    return product(between(up, y), first)
+    angle = atan2(dot(rotated(first, AXES["z"]), y), dot(rotated(first, AXES["y"]), y))
+    return product(turn(x, angle), first)
 
 
 def unit(q: Quaternion) -> Quaternion:

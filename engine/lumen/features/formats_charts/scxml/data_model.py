@@ -36,7 +36,7 @@ class ScxmlDataModel:
         self.keys: dict[str, str] = {}
         """Lumen's keys, by the ids of `<data>`."""
         self.taken: set[str] = set()
-        elements = [element for element in _data(outline.top, outline.scxml) if self._declare(element)]
+        elements = [element for element in _data(outline.scxml) if self._declare(element)]
         states = {outline.title: outline.title} | {id: node.name or outline.title for id, node in outline.by_id.items()}
         self.kinds: dict[str, str] = {}
         self.names = ScriptNames(self.keys, self.kinds, states, outline.events, outline.title)
@@ -152,7 +152,7 @@ def _top_data(scxml: XmlElement) -> Iterator[XmlElement]:
         yield from (data for data in model.of("data") if data.get("id"))
 
 
-def _data(top: XmlElement, scxml: XmlElement) -> Iterator[XmlElement]:
+def _data(scxml: XmlElement) -> Iterator[XmlElement]:
     """Yield every `<data>` with an id: the document's, then those of its states."""
     yield from _top_data(scxml)
     for state in scxml.walk():
