@@ -1,5 +1,6 @@
 """Rotations of imported models, compared with those that MuJoCo computes from the same attributes."""
 
+from collections.abc import Mapping
 from itertools import product
 from random import Random
 
@@ -16,25 +17,18 @@ DIRECTIONS: list[Vector] = [
 ]
 
 
-def of_mujoco(attribute: str, *numbers: float) -> Quaternion:
-    """Return the rotation (w, x, y, z) of a body with this attribute."""
-    body = f'<body {attribute}="{" ".join(map(repr, numbers))}"><geom size="1"/></body>'
-    model = mujoco.MjModel.from_xml_string(f"<mujoco><worldbody>{body}</worldbody></mujoco>")
-    w, x, y, z = map(float, model.body_quat[1])
-    return w, x, y, z
-
-
-def assert_same(ours: Quaternion, theirs: Quaternion) -> None:
-    """Check that two quaternions are the same rotation: a quaternion and its negative are."""
-    assert abs(float(np.dot(ours, theirs))) == pytest.approx(1.0, abs=1e-12)
+def assert_as_in_mujoco(attribute: str, ours: Mapping[tuple[float, ...], Quaternion]) -> None:
+    """Check the rotations (w, x, y, z) for values of the attribute; a quaternion and its negative are the same one."""
+    bodies = [f'<body {attribute}="{" ".join(map(repr, said))}"><geom size="1"/></body>' for said in ours]
+    model = mujoco.MjModel.from_xml_string(f"<mujoco><worldbody>{''.join(bodies)}</worldbody></mujoco>")
+    for said, mine, theirs in zip(ours, ours.values(), model.body_quat[1:], strict=True):
+        assert abs(float(np.dot(mine, theirs))) == pytest.approx(1.0, abs=1e-12), said
 
 
 def test_the_z_axis_turns_in_each_direction_as_in_mujoco() -> None:
-    for z in DIRECTIONS:
-        assert_same(between(AXES["z"], z), of_mujoco("zaxis", *z))
+    assert_as_in_mujoco("zaxis", {z: between(AXES["z"], z) for z in DIRECTIONS})
 
 
 def test_x_and_y_axes_turn_a_frame_as_in_mujoco() -> None:
-    for x, y in product(DIRECTIONS, repeat=2):
-        if np.linalg.norm(np.cross(x, y)) > 1e-3:
-            assert_same(of_axes(x, y), of_mujoco("xyaxes", *x, *y))
+    pairs = [(x, y) for x, y in product(DIRECTIONS, repeat=2) if np.linalg.norm(np.cross(x, y)) > 1e-3]
+    assert_as_in_mujoco("xyaxes", {(*x, *y): of_axes(x, y) for x, y in pairs})
