@@ -1,4 +1,4 @@
-"""The simulated robot, under physics."""
+"""The physically simulated robot."""
 
 from lumen.feature import BaseRow, Feature, PartRow, Phase, RobotOption, RobotRow, Section, Subcommand
 

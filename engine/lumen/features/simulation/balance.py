@@ -13,43 +13,42 @@ from lumen.motion.gait.legs import sign as outward
 from lumen.motion.gait.parameters import scale_of
 
 BALANCE_GAIN = 0.05
-"""The ankles' correction for each unit of the torso's rate [rad per rad/s]; the toes press on the side of the fall."""
+"""The ankles' correction per rate of the torso [rad per rad/s]; the soles press down on the side of the fall."""
 
 MAX_TRIM = 0.15
 _SMOOTHING = 0.3
 
 HIP_SAG, _SAG_SMOOTHING = 0.02, 0.8
-"""The sag of the hip of a leg that supports the robot alone [rad], since its servo lags and its gear has play."""
+"""The hip sag of a leg that alone supports the robot [rad], caused by the servo's lag and the gear's play."""
 
 LEAN, LEAN_RATE, LEAN_GAIN = 0.12, 0.1, 5.0
 """The maximum forward lean by ankles and hips [rad], its maximum rate [rad/s], and its rate per metre [rad/s per m].
 
-The last is for each metre by which the weight is too far back, for legs as long as those that the paces were tuned
-with.
+The last is per metre by which the weight is too far back, for the leg length with which the paces were tuned.
 """
 
 STANDING_AHEAD = 0.005
-"""The distance by which the weight is kept farther ahead than in a walk while standing [m], for legs of that length."""
+"""The distance by which a standing robot keeps its weight farther ahead than in a walk [m], for the same leg length."""
 
 HEEL_MARGIN = 0.01
-"""The distance of the DCM from the heels' edge below which the robot falls backwards [m], for legs of that length."""
+"""The distance of the DCM from the heels' edge below which the robot falls backwards [m], for the same leg length."""
 
 ARM_SWING, HIP_STRETCH = 3.0, 0.3
-"""The swing of the arms up and back, and the stretch of the hips, against a fall [rad]."""
+"""The arms' swing up and back, and the hips' stretch, against a backward fall [rad]."""
 
 ARM_SPEED, HIP_SPEED = 8.2, 6.0
-"""The speeds of that movement [rad/s], if the joints reach them."""
+"""The maximum speeds of the swing and the stretch [rad/s], if the joints reach them."""
 
 ARM_RETURN_TIME, HIP_RETURN_TIME = 1.0, 0.6
-"""The time in which arms and hips return [s]: slowly, because the return pushes the robot backwards again."""
+"""The durations of the arms' and hips' return [s]: long, because the return pushes the robot backwards again."""
 
 
 class BalanceController:
     """Corrects the joints' goals by the gyrometer, the encoders and the inertial unit.
 
-    `ahead` is the distance at which a walk keeps the weight in front of the ankles [m]. Before each `trim`, call
-    `falling.feel` and set `lifted`, the foot in the air, and `walking`, which is true while a walk shifts the weight
-    itself; `trim` resets both. `catching` is true while steps catch a fall.
+    `ahead` is the distance in front of the ankles at which a walk keeps the weight [m]. Before each `trim`, call
+    `falling.feel`, set `lifted` to the foot in the air, if any, and set `walking` to True if a walk shifts the weight
+    itself. `trim` resets both attributes. `catching` is True while steps catch a fall.
     """
 
     def __init__(self, motors: Motors, falling: FallingSense, legs: LegGeometry, roles: Roles, ahead: float) -> None:
@@ -78,8 +77,8 @@ class BalanceController:
     def trim(self, gyro: tuple[float, float], *, standing: bool) -> JointVector:
         """Return the corrections of the joints' goals [rad] while the torso rolls and pitches at `gyro` [rad/s].
 
-        The array is valid until the next call. Leaning and catching apply only to a robot that is `standing` on its
-        feet.
+        The array is valid until the next call. Only a robot that is `standing` on its feet leans or swings arms and
+        hips.
         """
         for axis, rate in enumerate(gyro):
             felt = self._felt[axis] = _SMOOTHING * self._felt[axis] + (1 - _SMOOTHING) * rate
@@ -101,7 +100,7 @@ class BalanceController:
     def _catch(self, standing: bool) -> None:
         """Keep the weight over the middle of the soles; swing arms and hips back if the robot falls backwards.
 
-        Parts that turn backwards push the rest forward, over the feet. NAO's heels end 45 mm behind its ankles; a push
+        Arms and hips that turn backwards push the rest of the body forward, over the feet. NAO's heels end 45 mm behind its ankles; a push
         of 2 N s from the front moves the DCM beyond them.
         """
         over = standing and self._falling.behind_heels > -self._heel_margin

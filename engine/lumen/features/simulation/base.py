@@ -1,4 +1,4 @@
-"""The interface of bases: the legs, wheels or mount under a simulated robot; the roles of its body name the kind."""
+"""The interface of a simulated robot's base: its legs, wheels or mount, as named in the roles of its body."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -21,7 +21,7 @@ from lumen.robot.executor import Activity
 
 @dataclass(frozen=True)
 class BaseRequest:
-    """The parts that a base is made from. Only the base may drive the joints of its legs or wheels."""
+    """The arguments for making a base. Only the base may drive the joints of its legs or wheels."""
 
     world: World
     models: Path
@@ -33,7 +33,7 @@ class BaseRequest:
     stage: Stage | None
     """The area in which the robot may move; None for no bounds."""
     free: Callable[[str], bool]
-    """A function that returns True if no command moves a joint and the joint has power."""
+    """A function that returns True if no command moves a joint and the motors are on."""
     hot: Callable[[], bool]
     """A function that returns True if the motors are hot and should be spared."""
 
@@ -44,11 +44,11 @@ class BaseRequest:
 
 
 class RobotBase(Protocol):
-    """The part under a robot that walks or drives, keeps the robot upright if possible, and estimates its position."""
+    """A base, which walks or drives, keeps the robot upright if possible, and estimates its position."""
 
     @property
     def whereabouts(self) -> Whereabouts | None:
-        """The robot's estimate of its position; None if it never moves from its place."""
+        """The robot's estimated position; None if the base never moves."""
 
     @property
     def catching(self) -> bool:
@@ -59,20 +59,20 @@ class RobotBase(Protocol):
         """The robot's soles, under which a film draws shadows."""
 
     def walk(self, command: Walk | Move, now: float) -> Activity:
-        """Begin a walk and return its activity. Raises RobotError, and moves nothing, if it must not begin."""
+        """Begin a walk and return its activity. Raises RobotError, and moves nothing, if the walk must not begin."""
 
     def steady(self, now: float, *, standing: bool, upright: bool) -> JointVector:
-        """Return the corrections of the joints' goals [rad] for this control period.
+        """Advance by one control period; return the corrections of the joints' goals [rad] for this period.
 
-        It is called only while the motors are on. `upright` is true if the robot intends to be on its feet, `standing`
-        if it is.
+        Called only while the motors are on. `upright` is True if the robot's posture is an upright one, `standing` if
+        the robot also has not fallen.
         """
 
     def relax(self) -> None:
-        """Spend a control period with the motors off; called instead of `steady`."""
+        """Advance by one control period with the motors off; called instead of `steady`."""
 
     def lose(self, posture: str) -> None:
-        """Widen the estimate of the position: the robot is in that posture or leaving it; empty if it has fallen."""
+        """Widen the position estimate: the robot is in `posture` or leaving it, or has fallen if `posture` is empty."""
 
     def keep(self, heading: float) -> None:
-        """Inform the estimate that the robot stands, with this heading by the gyrometer [rad]."""
+        """Update the position estimate: the robot stands, with this heading by the gyrometer [rad]."""

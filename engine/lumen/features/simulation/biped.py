@@ -1,4 +1,4 @@
-"""A base with two legs, on which the robot walks, balances and takes steps that catch a fall."""
+"""A base with two legs, on which the robot walks, balances and steps to catch a fall."""
 
 from lumen.features.simulation.balance import BalanceController
 from lumen.features.simulation.base import BaseRequest
@@ -54,7 +54,7 @@ class Biped:
 
     @property
     def whereabouts(self) -> Whereabouts:
-        """The robot's estimate of its position, and its possible error."""
+        """The robot's estimated pose and the possible error."""
         return self.odometry.whereabouts
 
     @property
@@ -64,16 +64,19 @@ class Biped:
 
     @property
     def soles(self) -> Soles:
-        """The half length and half width of each sole [m], by its site."""
+        """The half length and half width of each sole [m], by site name."""
         toe, heel, outer, inner = self.odometry.legs.sole_size
         return dict.fromkeys(self._soles, ((toe + heel) / 2, (outer + inner) / 2))
 
     def walk(self, command: Walk | Move, now: float) -> Activity:
-        """Begin to walk, or change the speed of the present walk. Raises RobotError if the walk must not begin."""
+        """Begin a walk, or change the present walk's speed, and return its activity.
+
+        Raises RobotError if the walk must not begin.
+        """
         return self.walker.begin(command, now)
 
     def steady(self, now: float, *, standing: bool, upright: bool) -> JointVector:
-        """Return the balance's corrections of the joints' goals [rad]; advance the steps that catch a fall."""
+        """Advance the steps that catch a fall, and return the balance's corrections of the joints' goals [rad]."""
         self.falling.feel()
         self.catcher.advance(now, standing=standing)
         return self.balance.trim(self._sensors.gyro if upright else (0.0, 0.0), standing=standing)
@@ -82,7 +85,7 @@ class Biped:
         """Do nothing: legs have no brakes."""
 
     def lose(self, posture: str) -> None:
-        """Widen the estimate of the position: the robot is down, or has fallen if `posture` is empty."""
+        """Widen the position estimate: the robot is in `posture` or leaving it, or has fallen if `posture` is empty."""
         self.odometry.lose(posture)
 
     def keep(self, heading: float) -> None:

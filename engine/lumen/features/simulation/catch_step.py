@@ -12,30 +12,27 @@ from lumen.motion.gait.parameters import scale_of, time_scale_of
 from lumen.motion.gait.swing import CapturePoint, hold_level, landing, smooth
 
 STEP_TIME, STEP_BACK_TIME = 0.17, 0.2
-"""The durations of a step forward or to the side, and of a step back [s].
-
-They are for legs as long as those that the step was tuned with.
-"""
+"""The durations of a forward and a backward step [s], for the leg length with which the step was tuned."""
 
 STEP_HEIGHT = 0.03
-"""The height to which a foot is lifted in a step forward or to the side [m], for such legs."""
+"""The height to which the foot is lifted in a forward step [m], for the same leg length."""
 
 TOES_PRESS, NEAR_TOES = 0.2, 0.05
-"""The maximum angle by which the supporting ankle presses its toes down during the step [rad], and a distance [m].
+"""The maximum angle by which the supporting ankle presses its toes down in a step [rad], and a distance limit [m].
 
-The toes press fully while the DCM is at the feet's front edge. They do not press if the DCM is farther behind the edge
-than that distance: the sole would tip, and the body with it, while the other foot is in the air. Nor do they if the DCM
-is as far beyond the edge: they would only make an inevitable fall harder.
+The toes press fully when the DCM reaches the feet's front edge. They don't press if the DCM is farther behind the edge
+than the limit, because the sole and the body would tip while the other foot is in the air. They don't press either if
+the DCM is that far beyond the edge, because they would make an inevitable fall harder.
 """
 
 KNEE_LIFT, LIFTS_EARLY = 0.25, 0.7
-"""The bend of the knee of a foot that steps back [rad], and the exponent of its time: below 1, it comes early."""
+"""The knee bend of the leg that steps back [rad], and the exponent of its time: below 1, the knee bends early."""
 
 KNEE_GIVES, GIVES_LATE = 0.8, 0.15
-"""The yielding of the other knee when a foot steps back [rad], and the share of the step at which it begins."""
+"""The bend of the supporting knee in a step back [rad], and the share of the step at which it begins."""
 
 UPRIGHT_GAIN, UPRIGHT_LEAN = 0.8, 0.45
-"""The gain and the target of the torso's forward lean [rad], which the supporting hip controls.
+"""The gain and the target [rad] of the torso's forward lean, which the supporting hip controls.
 
 Thighs hardly move backwards (0.48 rad), so a foot can step back only if the torso leans forward.
 """
@@ -47,9 +44,9 @@ _HIP, _KNEE, _ANKLE = 2, 3, 4
 
 
 class CatchStep:
-    """A step of the foot `side` to the place that the body falls towards. It begins at `now` [s].
+    """A step of the foot `side`, beginning at `now` [s], to the place towards which the body is falling.
 
-    `sent` are the angles last sent to the motors [rad]. Call `falling.feel` before each `advance`.
+    `sent` has the angles last sent to the motors [rad]. Call `falling.feel` before each `advance`.
     """
 
     def __init__(
@@ -72,7 +69,7 @@ class CatchStep:
         self._start = falling.soles[self._swings] - falling.soles[self._rests]
 
     def advance(self, now: float, measured: Mapping[str, float]) -> dict[str, float]:
-        """Return the goals of the legs' joints at `now` [s] as angles [rad]; `measured` are the present angles."""
+        """Return the goal angles of the legs' joints at `now` [s] as angles [rad]; `measured` has the present angles."""
         gone = now - self._begin
         part = min(1.0, (gone + _LOOK_AHEAD) / self._seconds)
         falling, left = self._falling, max(self._seconds - gone, 0.0)
@@ -93,7 +90,7 @@ class CatchStep:
         return now - self._begin >= self._seconds
 
     def _step_back(self, part: float, goal: CapturePoint, measured: Mapping[str, float]) -> dict[str, float]:
-        """Return the angles of a step back: the knee bends first, the torso leans forward and the body is lowered."""
+        """Return the angles of a step back [rad]: the knee bends first, the torso leans forward, and the body sinks."""
         side, bears, sent = self.side, self.bears, self._sent
         end, way = self._level(np.array([*goal, 0.0])), min(1.0, part / _LANDS)
         joints = {**sent, **{n: sent[n] + way * (angle - sent[n]) for n, angle in end.items()}}
@@ -112,10 +109,10 @@ class CatchStep:
         return joints
 
     def _turn(self, joints: dict[str, float], side: Side, role: int, by: float) -> None:
-        """Add to the angle of one joint of a leg [rad]."""
+        """Add `by` [rad], in the role's usual direction, to the angle of one leg joint."""
         joints[self._legs.names[side][role]] += self._legs.signs[side][role] * by
 
     def _level(self, place: CapturePoint) -> dict[str, float]:
-        """Return the angles of the swinging leg that hold its sole level at `place`, relative to the other sole."""
+        """Return the swinging leg's angles [rad] that hold its sole level at `place` [m], relative to the other sole."""
         sole = self._falling.soles[self._rests] + place
         return hold_level(self._legs, self.side, self._falling.axes, sole, self._sent)

@@ -1,4 +1,4 @@
-"""Steps that catch a fall too strong for ankles, hips and arms; then the robot continues its activity."""
+"""Steps that catch a fall too strong for ankles, hips and arms, after which the robot continues its activity."""
 
 from collections.abc import Callable, Mapping
 
@@ -13,34 +13,33 @@ from lumen.motion.gait.parameters import scale_of, time_scale_of
 from lumen.motion.gait.swing import smooth
 
 BEYOND_TOES, BEYOND_HEELS = -0.01, -0.008
-"""The distances of the DCM beyond the feet's front and rear edge at which a step begins [m].
+"""The distances of the DCM beyond the feet's front and rear edges above which a step begins [m].
 
-They are for legs as long as those that the step was tuned with. No step is taken sideways, since a foot can't cross the
-other.
+They are for the leg length with which the step was tuned. The robot never steps sideways, since its feet can't cross.
 """
 
 ASIDE = 0.008
-"""The distance of the DCM to the side beyond which a backward fall is caught [m].
+"""The sideways distance of the DCM above which steps catch a backward fall [m].
 
-In a straight backward fall both feet stay loaded, and arms and hips help more than a foot that does not leave the
+In a straight backward fall, both feet stay loaded, and arms and hips help more than a foot that can't leave the
 ground.
 """
 
 BRACE_TIME, CALM_TIME, RETURN_TIME = 0.5, 0.3, 1.0
-"""The times to bring the body between the feet, to rest there, and to return to the legs' earlier task [s]."""
+"""The times to bring the body between the feet, to rest there, and to return the legs to their goals [s]."""
 
 NEXT_STEP = 0.2
-"""The pause after a step before the next may begin [s]."""
+"""The minimum pause between two steps [s]."""
 
 MOST_STEPS = 4
-"""The maximum number of steps towards one fall."""
+"""The maximum number of steps to catch one fall."""
 
 
 class FallCatcher:
     """Controls the legs while it catches a fall; the motors keep the legs' earlier goals.
 
-    It takes one or more steps towards the fall, rests with bent legs, and steps until the feet are side by side again.
-    A walk then continues from there; for any other activity the legs return slowly to their goals.
+    The robot takes one or more steps in the direction of the fall, rests with bent legs, and steps until its feet are
+    side by side again. Then a walk continues; for any other activity, the legs return slowly to their goals.
     """
 
     def __init__(
@@ -73,7 +72,7 @@ class FallCatcher:
         return self._does is not None
 
     def advance(self, now: float, *, standing: bool) -> None:
-        """Advance to `now` [s]; a robot that is not `standing` on its feet catches nothing."""
+        """Begin or continue to catch a fall at `now` [s]; stop if the robot is not `standing` on its feet."""
         if not standing:
             self._does = None
             return
@@ -101,7 +100,7 @@ class FallCatcher:
         return {name: float(self._motors.command[self._motors.index[name]]) for name in self._names}
 
     def _set_out(self, now: float) -> None:
-        """Step with the foot that is already in the air, or else the one farther from the DCM."""
+        """Begin a step with the foot that is already in the air, else with the foot farther from the DCM."""
         far = self._falling.far
         side: Side = self._balance.lifted or ("L" if far[0] > far[1] else "R")
         if not self._steps:
@@ -124,7 +123,7 @@ class FallCatcher:
             self._does = self._brace
 
     def _brace(self, now: float) -> None:
-        """Bring the body between the feet; step again if it still falls."""
+        """Bring the body between the feet; step again if the robot is still falling."""
         assert self._gait
         gone = now - self._since
         if gone > NEXT_STEP * self._slow and max(self._falling.beyond) > 0.0 and self._steps < MOST_STEPS:

@@ -8,7 +8,7 @@ from lumen.features.simulation.physics import mujoco
 from lumen.features.simulation.visitor_figure import VISITOR_BODY
 
 Soles = Mapping[str, tuple[float, float]]
-"""The sites below a robot's ankles, with half the length and half the width of each sole [m]."""
+"""The half length and half width of each sole [m], by the name of its site below the ankle."""
 NO_SOLES: Soles = {}
 
 SHADOW_FADES = 0.05
@@ -16,15 +16,15 @@ SHADOW_FADES = 0.05
 
 LAYERS, LAYER_OPACITY = (0.75, 1.0, 1.3, 1.65), 0.13
 BEYOND_SOLE, VISITOR_SIZE = (0.018, 0.015), (0.17, 0.2)
-"""The extent of a spot beyond half a sole, ahead and sideways, and half the length and width of a visitor's [m]."""
+"""The extent of a spot beyond half a sole, ahead and sideways, and half the size of a visitor's spot [m]."""
 
 _THICKNESS = 4e-4
 _GROUND = np.array([1, 0, 0, 0, 0, 0], dtype=np.uint8)
-"""The groups of geoms that count as ground."""
+"""The flags of the geom groups that count as ground: only group 0."""
 
 
 class ContactShadows:
-    """Adds the spots of the robot and the visitor, if present, to a scene of one model."""
+    """Adds the spots of the robot and of a visitor, if present, to a scene of one model."""
 
     def __init__(self, model: mujoco.MjModel, soles: Soles) -> None:
         self._model = model
@@ -36,7 +36,7 @@ class ContactShadows:
         self._visitor = visitor if visitor >= 0 else None
 
     def add(self, scene: mujoco.MjvScene, data: mujoco.MjData) -> None:
-        """Add the spots to the scene, as many as it has room for."""
+        """Add the spots to the scene, as many as fit."""
         for place, turn, (length, width), opacity in self._spots(data):
             for i, layer in enumerate(LAYERS):
                 if scene.ngeom >= scene.maxgeom:
@@ -61,7 +61,7 @@ class ContactShadows:
             yield data.xpos[self._visitor].copy(), data.xmat[self._visitor].reshape(3, 3), VISITOR_SIZE, 1.0
 
     def _on_ground(self, data: mujoco.MjData, above: np.ndarray, sole: float) -> tuple[np.ndarray, float] | None:
-        """Return the ground's point below `above` and the height of `sole` over it [m]; None if there is no ground."""
+        """Return the ground point below `above` and the height of `sole` over it [m]; None without ground."""
         hit = np.array([-1], dtype=np.int32)
         far = mujoco.mj_ray(self._model, data, above, np.array([0.0, 0.0, -1.0]), _GROUND, 1, -1, hit)
         if far < 0:
@@ -71,7 +71,7 @@ class ContactShadows:
 
 
 def _flat(ahead: np.ndarray) -> np.ndarray:
-    """Return the rotation matrix of a flat object that points in the direction `ahead`."""
+    """Return the rotation matrix of a horizontal object whose front points in the direction `ahead`."""
     x, y = float(ahead[0]), float(ahead[1])
     length = max(float(np.hypot(x, y)), 1e-9)
     x, y = x / length, y / length

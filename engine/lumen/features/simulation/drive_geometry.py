@@ -11,10 +11,7 @@ from lumen.features.simulation.world import World
 from lumen.motion.gait.pendulum import GRAVITY
 
 TIPPING_SHARE = 0.25
-"""The share of the maximum acceleration that the robot uses.
-
-Beyond the maximum it would tip over, or its motors would be too weak.
-"""
+"""The share that the robot uses of the maximum acceleration, which its motors reach without tipping it over."""
 
 ON_THE_GROUND = 0.01
 """The height above the wheels' lowest points up to which geoms carry the robot [m]."""
@@ -39,17 +36,17 @@ class DriveGeometry(NamedTuple):
     track: float
     """The distance between the wheels [m]."""
     fastest: float
-    """The maximum speed of rolling [m/s]."""
+    """The maximum rolling speed [m/s]."""
     acceleration: float
-    """The acceleration and deceleration along the way [m/s^2]."""
+    """The maximum linear acceleration and deceleration [m/s^2]."""
     spin: float
-    """The angular acceleration [rad/s^2]."""
+    """The maximum angular acceleration and deceleration [rad/s^2]."""
     reach: float
-    """The maximum distance of the wheels and casters from the middle between the wheels [m]."""
+    """The maximum distance of the wheels and casters from the midpoint between the wheels [m]."""
 
 
 def read_drive(world: World) -> DriveGeometry:
-    """Return the wheels of a robot in its world. Raises RobotModelError if the robot can't drive on them."""
+    """Return the geometry of a robot's driven wheels. Raises RobotModelError if the robot can't drive on them."""
     model, data, base = world.model, world.data, world.body.roles.base
     torso = data.body(world.torso)
     axes, names = torso.xmat.reshape(3, 3), (base.left, base.right)
@@ -90,13 +87,13 @@ def read_drive(world: World) -> DriveGeometry:
 
 
 def _motor(model: mujoco.MjModel, joint: int) -> int:
-    """Return the actuator that turns a joint."""
+    """Return the index of the actuator that turns a joint."""
     turned = (model.actuator_trntype == mujoco.mjtTrn.mjTRN_JOINT) & (model.actuator_trnid[:, 0] == joint)
     return int(np.flatnonzero(turned)[0])
 
 
 def _radius(model: mujoco.MjModel, link: int) -> float:
-    """Return the radius of the largest round geom of a link that can touch something [m], 0 without one."""
+    """Return the radius of a link's largest round geom that can touch something [m]; 0 if it has none."""
     geoms = np.arange(model.body_geomadr[link], model.body_geomadr[link] + model.body_geomnum[link])
     solid = (model.geom_contype[geoms] | model.geom_conaffinity[geoms]).astype(bool)
     radii = model.geom_size[geoms[solid & np.isin(model.geom_type[geoms], _ROUND)], 0]
@@ -104,7 +101,7 @@ def _radius(model: mujoco.MjModel, link: int) -> float:
 
 
 def _carried(world: World, radius: float, axle: float) -> NDArray[np.float64]:
-    """Return the positions of the robot's geoms that reach down as far as its wheels, such as casters.
+    """Return the positions of the wheels and of other geoms that reach the ground, such as casters.
 
     They are points in the torso's frame, Shape (points, 2) [m].
     """
@@ -123,7 +120,7 @@ def _carried(world: World, radius: float, axle: float) -> NDArray[np.float64]:
 
 
 def _mass(world: World) -> tuple[float, NDArray[np.float64]]:
-    """Return the mass of the whole robot [kg] and its centre in the torso's frame (3,) [m]."""
+    """Return the whole robot's mass [kg] and its centre in the torso's frame [m], Shape (3,)."""
     root, torso = int(world.model.body_rootid[world.torso]), world.data.body(world.torso)
     centre: NDArray[np.float64] = torso.xmat.reshape(3, 3).T @ (world.data.subtree_com[root] - torso.xpos)
     return float(world.model.body_subtreemass[root]), centre

@@ -1,4 +1,4 @@
-"""Driving on two wheels side by side, to a place or at a constant speed: the wheels' speeds and the time to brake."""
+"""Driving on two wheels side by side, to a place or at a constant speed, and braking in time."""
 
 from collections.abc import Callable
 from math import atan2, copysign, hypot, sqrt
@@ -17,25 +17,25 @@ NEAR, FACING = 0.008, 0.015
 """The tolerances of position [m] and angle [rad] within which the robot neither drives nor turns."""
 
 BACKS_UP = 0.6
-"""The robot reaches a place behind it in reverse if it is no farther than this [m]."""
+"""The maximum distance of a place behind the robot that it reaches in reverse [m]."""
 
 STEERING, CREEPING, CREEPING_TURN = 2.0, 0.03, 0.1
 """The rate of steering back to the path [1/s], and the minimum speeds of a drive [m/s] and of a turn [rad/s]."""
 
 BRAKES_EARLY = 0.85
-"""The share of the maximum braking speed that is used: motors react late."""
+"""The share used of the speed from which the robot could just stop in time: motors react late."""
 
 MOTORS_LATE = 0.06
-"""The time for which the wheels keep their speed before a command acts [s]."""
+"""The delay before a command changes the wheels' speeds [s]."""
 
 STUCK_TIME = 3.0
-"""A drive that has not moved the robot for this long counts as stuck [s]."""
+"""The time without movement after which a drive counts as stuck [s]."""
 
 
 class Drive:
-    """Turns the wheels within the base's limits of speed and acceleration; without a call of `steer` it brakes.
+    """Turns the wheels within the base's speed and acceleration limits; in a period without `steer`, it brakes.
 
-    The argument `limit` has the maximum forward speed [m/s] and turning speed [rad/s]; hot motors halve both.
+    The argument `limit` is the maximum forward speed [m/s] and turning speed [rad/s]; hot motors halve both.
     """
 
     def __init__(self, world: World, geometry: DriveGeometry, limit: Velocity, hot: Callable[[], bool]) -> None:
@@ -70,14 +70,14 @@ class Drive:
         self._world.data.ctrl[geometry.motors] = geometry.signs * rolling / geometry.radius
 
     def halt(self) -> None:
-        """Stop the wheels at once, as hard as the motors can."""
+        """Stop the wheels as hard as the motors can."""
         self.speed = self.turning = 0.0
         self._wanted = 0.0, 0.0
         self._world.data.ctrl[self.geometry.motors] = 0.0
 
 
 class DriveActivity:
-    """A drive in progress. An obstacle or the stage's edge ends it as `cancel` does: by braking."""
+    """A drive in progress. A hazard or the stage's edge ends it by braking, as `cancel` does."""
 
     def __init__(self, drive: Drive, odometry: WheelOdometry, hazards: Hazards, now: float) -> None:
         self.drive, self.odometry, self._hazards = drive, odometry, hazards
@@ -87,9 +87,9 @@ class DriveActivity:
         self._cancelled = False
 
     def advance(self, now: float) -> bool:
-        """Steer for one period until `now` [s]; return True once the robot has arrived or stopped.
+        """Steer for the control period at `now` [s]; return True when the robot has arrived or stopped.
 
-        Raises RobotFailedError if a hazard stopped it or it did not reach its goal.
+        Raises RobotFailedError if a hazard or the stage's edge stopped the robot, or if it did not reach its goal.
         """
         self._now = now
         if not self._cancelled and now >= self._look:
@@ -109,11 +109,11 @@ class DriveActivity:
         self._cancelled = True
 
     def _go(self, now: float) -> bool:
-        """Steer in this period; return True at the end of the drive."""
+        """Steer for one control period; return True at the end of the drive."""
         raise NotImplementedError
 
     def _leaves(self) -> str:
-        """Return the reason if the robot must not reach the place where braking now would stop it; empty if it may."""
+        """Return the reason why the robot must not reach its stopping place if it brakes now; empty if it may."""
         speed, here = self.drive.speed, self.odometry.here
         late = HAZARD_CHECK_PERIOD + MOTORS_LATE
         comes = speed * late + speed * abs(speed) / (2 * self.drive.geometry.acceleration)
@@ -132,7 +132,7 @@ class DriveOn(DriveActivity):
         self._wanted = wanted
 
     def change(self, wanted: Velocity, now: float) -> bool:
-        """Continue at that speed; return False if the drive is ending or was not advanced to `now`."""
+        """Continue at this velocity and return True; return False if the drive is ending or not advanced to `now`."""
         alive = self._now == now and not self._cancelled
         if alive:
             self._wanted = wanted
@@ -174,14 +174,14 @@ class DriveTo(DriveActivity):
         return True
 
     def _face(self, seen: Pose) -> bool:
-        """Turn the front, or the back, towards the goal; return False."""
+        """Turn the front, or the back, towards the goal; always return False."""
         bearing = atan2(-seen.y, -seen.x) if self._back else atan2(seen.y, seen.x)
         if self._round(bearing):
             self._phase = self._approach
         return False
 
     def _approach(self, seen: Pose) -> bool:
-        """Drive to the goal, correcting sideways errors while enough distance remains; return False."""
+        """Drive to the goal, correcting sideways errors while enough distance remains; always return False."""
         ahead = -1.0 if self._back else 1.0
         left, drive = ahead * seen.x, self.drive
         if left < NEAR:
@@ -198,7 +198,7 @@ class DriveTo(DriveActivity):
         return self._round(seen.theta)
 
     def _round(self, angle: float) -> bool:
-        """Turn by that angle [rad]; return True when done."""
+        """Turn by this angle [rad]; return True when done."""
         drive = self.drive
         if abs(angle) < FACING:
             return drive.still
@@ -209,12 +209,12 @@ class DriveTo(DriveActivity):
 def _braking(left: float, most: float, rate: float, least: float) -> float:
     """Return the maximum speed from which the robot can stop within the distance `left`, between `least` and `most`.
 
-    `rate` is the deceleration. All of them are lengths [m] or all angles [rad].
+    `rate` is the deceleration. The values are either all linear [m] or all angular [rad].
     """
     return min(most, max(least, BRAKES_EARLY * sqrt(2 * rate * left)))
 
 
 def _toward(speed: float, wanted: float, rate: float) -> float:
-    """Return the speed one control period later, at most `rate` nearer to `wanted` per second."""
+    """Return `speed` after one control period, changed towards `wanted` by at most `rate` per second."""
     step = rate * CONTROL_PERIOD
     return min(max(wanted, speed - step), speed + step)

@@ -1,4 +1,4 @@
-"""The robot's own estimate of its centre of mass, and of the direction in which it is falling, from its own sensors."""
+"""The robot's estimate of its centre of mass and direction of fall, from its own sensors."""
 
 from collections.abc import Mapping
 from math import hypot, sqrt
@@ -47,9 +47,9 @@ class MassModel:
         self._soles = np.array([self.model.site(name).id for name in soles], np.intp)
 
     def pose(self, angles: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Return the centre of mass (3,) and the points of both soles below the ankles (2, 3).
+        """Return the centre of mass, Shape (3,), and the soles' sites, Shape (2, 3), in the torso's frame [m].
 
-        Both are in the torso's frame [m]. `angles` are those of all joints in the body's order [rad].
+        `angles` are the angles of all joints in the body's order [rad].
         """
         self._data.qpos[self._order] = angles
         mujoco.mj_kinematics(self.model, self._data)
@@ -59,7 +59,7 @@ class MassModel:
         )
 
     def centre_of_mass(self, angles: Mapping[str, float]) -> NDArray[np.float64]:
-        """Return the centre of mass (3,) in the torso's frame [m].
+        """Return the centre of mass, Shape (3,), in the torso's frame [m].
 
         Joints that are not in `angles` [rad] keep their last value.
         """
@@ -70,7 +70,7 @@ class MassModel:
         return self._seen(self._data.subtree_com[self._whole])
 
     def _seen(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return points of the world, Shape (..., 3), in the torso's frame [m]."""
+        """Return points of the world frame, Shape (..., 3), in the torso's frame [m]."""
         if self._torso_is_world:
             return points.copy()
         seen: NDArray[np.float64] = (points - self._data.xpos[self._torso]) @ self._data.xmat[self._torso].reshape(3, 3)
@@ -79,19 +79,16 @@ class MassModel:
 
 _SMOOTHING = 0.65
 _LOWEST = 0.15
-"""The minimum height of the centre of mass that is assumed [m].
-
-It is for legs as long as those that the paces were tuned with.
-"""
+"""The minimum assumed height of the centre of mass [m], for the leg length with which the paces were tuned."""
 
 
 class FallingSense:
-    """The centre of mass and its divergent component of motion (DCM), as seen from the feet.
+    """The centre of mass and its divergent component of motion (DCM), relative to the feet.
 
     Axes are level with the ground: forward along the torso's heading, left, up [m]. The estimate uses the encoders, the
-    inertial unit and the published masses, so a load or a difference in build makes it wrong. The DCM is the point
-    where the weight would have to rest for the body to come to a halt there: the capture point of Pratt and others,
-    "Capture point: a step toward humanoid push recovery", 2006. In arrays with two rows the first is the left foot's.
+    inertial unit and the published masses, so a load or a difference in build makes it wrong. The DCM is the ground
+    point that must bear the weight for the body to come to a halt above it: the capture point of Pratt and others,
+    "Capture point: a step toward humanoid push recovery", 2006. In two-row arrays, the first row is the left foot's.
     """
 
     def __init__(self, sensors: BodySensors, mass_model: MassModel, legs: LegGeometry) -> None:
@@ -105,13 +102,13 @@ class FallingSense:
         self.axes: NDArray[np.float64] = np.eye(3)
         """The forward, left and up axes in the torso's frame, Shape (3, 3)."""
         self.soles: NDArray[np.float64] = np.zeros((2, 3))
-        """Both soles, seen from the torso."""
+        """Both soles, relative to the torso."""
         self.mass: NDArray[np.float64] = np.zeros((2, 3))
-        """The centre of mass, seen from each sole."""
+        """The centre of mass, relative to each sole."""
         self.dcm: NDArray[np.float64] = np.zeros((2, 2))
-        """The DCM on the ground, seen from each sole."""
+        """The DCM on the ground, relative to each sole."""
         self.omega = 6.0
-        """The rate at which the DCM's distance from its resting point grows [1/s]."""
+        """The rate at which the DCM diverges from the centre of pressure [1/s]."""
 
     @property
     def ahead(self) -> float:
@@ -125,10 +122,7 @@ class FallingSense:
 
     @property
     def beyond(self) -> tuple[float, float, float, float]:
-        """The distances of the DCM beyond the front, rear, left and right edge of both feet together [m].
-
-        They are negative inside.
-        """
+        """The distances of the DCM beyond the front, rear, left and right edges of both feet [m]; negative inside."""
         toe, heel, outer, inner = self._sole
         (left_x, left_y), (right_x, right_y) = self._left, self._right
         ahead, behind = toe - min(left_x, right_x), -heel - max(left_x, right_x)
@@ -136,12 +130,12 @@ class FallingSense:
 
     @property
     def aside(self) -> float:
-        """The distance of the DCM to the left of the middle between the feet [m]."""
+        """The distance of the DCM to the left of the midpoint between the feet [m]; negative to the right."""
         return (self._left[1] + self._right[1]) / 2
 
     @property
     def far(self) -> tuple[float, float]:
-        """The distances of the DCM from the left and the right ankle [m]."""
+        """The horizontal distances of the DCM from the left and right ankles [m]."""
         return hypot(*self._left), hypot(*self._right)
 
     def feel(self) -> None:

@@ -1,4 +1,4 @@
-"""A base that is mounted in one place."""
+"""A base mounted in one place."""
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from lumen.robot.executor import Activity
 
 
 class Fixed:
-    """Holds the robot: it neither walks nor falls; only its joints move."""
+    """A mount: the robot can neither walk nor fall, and moves only its joints."""
 
     whereabouts = None
     catching = False
@@ -25,14 +25,14 @@ class Fixed:
         raise RobotRefusedError("the robot can't walk: it has neither legs nor wheels")
 
     def steady(self, now: float, *, standing: bool, upright: bool) -> JointVector:
-        """Return no corrections: the base needs no balance."""
+        """Return zero corrections: the base needs no balance."""
         return self._nothing
 
     def relax(self) -> None:
         """Do nothing: the base has no motors."""
 
     def lose(self, posture: str) -> None:
-        """Do nothing: the robot's place is certain."""
+        """Do nothing: the robot's position is certain."""
 
-    def keep(self, heading: float) -> None:
-        """Do nothing: the robot's place is certain."""
+        def keep(self, heading: float) -> None:
+            """Do nothing: the robot's position is certain."""

@@ -1,4 +1,4 @@
-"""Chooses the OpenGL library for drawing without a screen when it is imported; import it before mujoco."""
+"""Chooses, on import, the OpenGL library for drawing without a screen; import this module before mujoco."""
 
 import ctypes
 import importlib
@@ -34,10 +34,10 @@ def choose() -> str:
 
 
 def _settle() -> tuple[str, str]:
-    """Choose a backend, the user's in MUJOCO_GL if set; return it, and the reason if the user's can't draw.
+    """Choose a backend, from MUJOCO_GL if set; return it and the reason why the first choice can't draw, if any.
 
-    In that case the backend is `disable`: only the physics works. If mujoco was imported before, its own choice is made
-    again.
+    If there is a reason, the backend is `disable`: only the physics works. If mujoco was already imported and MUJOCO_GL
+    is not set, mujoco repeats its own choice.
     """
     wanted = os.environ.get("MUJOCO_GL", "").strip().lower()
     late = not wanted and sys.modules.get("mujoco.rendering.classic.gl_context")
@@ -52,9 +52,9 @@ def _settle() -> tuple[str, str]:
 
 
 def _fault(backend: str) -> str:
-    """Return the reason why mujoco and dm_control can't be imported with that backend.
+    """Return the reason why mujoco and dm_control can't be imported with this backend.
 
-    It is empty if they can be, or if they are not installed.
+    The reason is empty if the imports work or if the packages are not installed.
     """
     screen = os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY") or sys.platform != "linux"
     if backend in _WITH_SCREEN and not screen:

@@ -1,4 +1,4 @@
-"""The sensors for the hall around the robot: touch, forces under the feet (NAO's `FSR`), and ultrasonic echoes."""
+"""The sensors for the robot's surroundings: touch, forces under the feet (NAO's `FSR`), and ultrasonic echoes."""
 
 from collections.abc import Iterable, Mapping
 from itertools import compress
@@ -13,13 +13,13 @@ from lumen.language.robots import Ultrasound
 from lumen.language.roles import SIDES, Roles
 
 _SOLID = 2
-"""The collision type of things in a hall other than the ground."""
+"""The collision type of objects in a hall other than the ground."""
 
 
 class TactileSensors:
-    """Checks the robot's contacts with things in the hall.
+    """Checks the contacts between the robot's sensors and objects in the hall.
 
-    A sensor is the box of the model's site of its name; those of `sensors` without a site are never pressed.
+    Each sensor is the box of the site with the sensor's name in the model; sensors without a site are never pressed.
     """
 
     def __init__(
@@ -31,7 +31,7 @@ class TactileSensors:
         self._sites = {name: site for name, site in sites.items() if site >= 0}
 
     def pressed(self) -> set[str]:
-        """Return the names of the sensors that things in the hall press now."""
+        """Return the names of the sensors that objects in the hall are pressing."""
         touching = self._data.contact.geom
         if self._solid.isdisjoint(touching.ravel().tolist()):
             return set()
@@ -48,14 +48,14 @@ class TactileSensors:
 
 
 NEWTONS_PER_KILOGRAM = 9.81
-"""The newtons in a kilogram-force: ALMemory gives these forces in kilograms."""
+"""The newtons in a kilogram-force: ALMemory stores these forces in kilograms."""
 
 SENSED_FEET = {"left": "LFoot", "right": "RFoot"}
 """ALMemory's names of the feet, by side."""
 
 
 class ForceSensors:
-    """Measures the force on each quarter of the soles at which the model has a touch sensor."""
+    """Measures the force on each quarter of a sole for which the model has a touch sensor."""
 
     def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, roles: Roles, prefix: str = ROBOT_PREFIX) -> None:
         touch = np.flatnonzero(model.sensor_type == mujoco.mjtSensor.mjSENS_TOUCH)
@@ -70,9 +70,9 @@ class ForceSensors:
         self._feet = {foot: [name.startswith(foot) for name in self._places] for foot in SENSED_FEET.values()}
 
     def weigh(self) -> Mapping[str, float]:
-        """Return the force at each sensor [kg] by ALMemory's name, and the sum for each foot.
+        """Return each sensor's force and each foot's total [kg], by ALMemory's names; empty without sensors.
 
-        The names are such as `LFoot/FSR/FrontLeft` and `LFoot/FSR/TotalWeight`. Without sensors there are no forces.
+        Examples of names are `LFoot/FSR/FrontLeft` and `LFoot/FSR/TotalWeight`.
         """
         if not self._places:
             return {}
@@ -84,7 +84,7 @@ class ForceSensors:
 
 
 def _corners(model: mujoco.MjModel, names: Iterable[str], prefix: str) -> list[tuple[str, int]]:
-    """Return the corner of the sole, such as `FrontLeft`, and the id of each site."""
+    """Return each site's corner of the sole, such as `FrontLeft`, and its id."""
     sites = [model.site(f"{prefix}/{name}").id for name in names]
     middle = model.site_pos[sites].mean(axis=0)
     ahead = ["Front" if x > middle[0] else "Rear" for x in model.site_pos[sites, 0]]
@@ -93,14 +93,14 @@ def _corners(model: mujoco.MjModel, names: Iterable[str], prefix: str) -> list[t
 
 
 _ECHOING = np.array([0, 1, 0, 0, 0, 0], dtype=np.uint8)
-"""Geom group 1, the things in the hall. The ground reflects sound away, and the robot does not detect itself."""
+"""Only geom group 1, the objects in the hall. The ground reflects sound away, and the robot does not detect itself."""
 
 _RINGS = ((0.0, 1), (0.45, 6), (0.9, 8))
 SONAR_RESOLUTION, SONAR_NOISE = 0.01, 0.003
 
 
 class Sonars:
-    """Measures the nearest echo on either side [m], with a little noise."""
+    """Measures the distance of the nearest echo on either side [m], with noise."""
 
     def __init__(
         self,
@@ -119,7 +119,7 @@ class Sonars:
         self._hit = np.zeros(len(self._rays), dtype=np.int32)
 
     def measure(self) -> tuple[float, float]:
-        """Return the distances left and right [m], at most the sensor's range; a single sensor gives both."""
+        """Return the distances left and right [m], limited to the sensor's range; a single sensor gives both."""
         heard = [self._heard(name) for name in self._sites]
         return heard[0], heard[-1]
 
@@ -136,7 +136,7 @@ class Sonars:
 
 
 def _cone(half: float) -> NDArray[np.float64]:
-    """Return directions around x in a cone of that half angle [rad]: Shape (rays, 3)."""
+    """Return unit vectors in a cone around x with this half angle [rad]: Shape (rays, 3)."""
     rays = []
     for part, count in _RINGS:
         angle = part * half

@@ -1,4 +1,4 @@
-"""Hazards that forbid a step: an obstacle ahead, or a hand on a button."""
+"""Hazards that forbid a step: an obstacle ahead, or a pressed bumper or chest button."""
 
 from collections.abc import Mapping
 
@@ -7,11 +7,11 @@ from lumen.robot.hazards import danger
 
 
 class Hazards:
-    """Checks the sonars, if there are any, and the tactile sensors in `pressed`, which is updated elsewhere."""
+    """Checks any sonars, and the tactile sensors in `pressed`, which the robot keeps up to date."""
 
     def __init__(self, sonars: Sonars | None, pressed: Mapping[str, bool]) -> None:
         self._sonars, self._pressed = sonars, pressed
 
     def danger(self) -> str:
-        """Return the reason why the robot must not walk now; empty if nothing is in the way."""
+        """Return the reason why the robot must not walk now; empty without a hazard."""
         return danger(self._pressed, self._sonars.measure() if self._sonars else ())

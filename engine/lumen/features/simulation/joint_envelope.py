@@ -1,4 +1,4 @@
-"""A body's limits for its joints, which no command can exceed."""
+"""A body's joint limits, which no command can exceed."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +11,7 @@ JointVector = NDArray[np.float64]
 
 
 class JointEnvelope:
-    """The limits, coupled limits, maximum speeds and shared motors of one body."""
+    """One body's joint limits, coupled limits, maximum speeds and shared motors."""
 
     def __init__(self, body: Body) -> None:
         names = list(body.joints)
@@ -23,10 +23,10 @@ class JointEnvelope:
         self._coupled = [(names.index(c.joint), names.index(c.on), c) for c in body.coupled]
 
     def step(self, last: JointVector, goal: JointVector, dt: float) -> JointVector:
-        """Return the command that follows `last` on the way to `goal`, `dt` [s] later.
+        """Return the joint angles to command `dt` [s] after `last` on the way to `goal`.
 
-        Every joint stays inside its limits and below its maximum speed, whatever the goal is. If a joint can't follow
-        a coupled limit in time, the joint that narrows the limit waits.
+        Whatever the goal, every joint stays within its limits and its maximum speed. If a joint can't follow a coupled
+        limit in time, the joint that narrows the limit slows down or waits.
         """
         reach = self.speed * dt
         result: JointVector = np.maximum(np.minimum(goal, last + reach), last - reach)

@@ -6,22 +6,21 @@ from lumen.features.simulation.motors import Motors
 from lumen.robot.joint_ways import way_duration
 
 MIN_TRANSITION_TIME, MAX_TRANSITION_TIME = 0.6, 2.0
-"""The duration of a change of posture [s] at speed 1 and at the slowest; with these the robot never fell in trials."""
+"""The durations of a posture change at speed 1 and at low speeds [s]; with them, the robot never fell in trials."""
 
 _HALT = 0.4
 
 
 def duration(speed: float) -> float:
-    """Return the duration of a change of posture [s] at a `speed` that is a share of the maximum (above 0, up to 1)."""
+    """Return the duration of a posture change [s]; `speed` is a share of the maximum (above 0, up to 1)."""
     return min(MAX_TRANSITION_TIME, MIN_TRANSITION_TIME / speed)
 
 
 class JointTransition:
     """Moves all joints of `targets` [rad] together along a smoothstep.
 
-    It lasts `seconds`, or longer if a joint needs more time.
-
-    `after` is called once at the end, but not after `cancel`. A cancelled transition comes to a halt within 0.4 s.
+    The movement lasts `seconds` [s], or longer if a joint needs more time. `after` is called at the end unless the
+    transition was cancelled. A cancelled transition halts within 0.4 s.
     """
 
     def __init__(
@@ -40,7 +39,7 @@ class JointTransition:
         self._halt: tuple[float, float, float] | None = None
 
     def advance(self, now: float) -> bool:
-        """Move the goals on to `now` [s]; return True at the end."""
+        """Move the joints' goals for `now` [s]; return True at the end."""
         self._now = now
         if self._halt:
             return self._come_to_rest(now, *self._halt)
@@ -51,7 +50,7 @@ class JointTransition:
         return u >= 1.0
 
     def cancel(self) -> None:
-        """Begin to slow down; `advance` returns True once the joints are at rest."""
+        """Begin to slow down; `advance` returns True when the goals are at rest."""
         u = min(1.0, (self._now - self._begin) / self._seconds)
         self._halt = self._now, u * u * (3 - 2 * u), 6 * u * (1 - u) / self._seconds
 

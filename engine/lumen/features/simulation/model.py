@@ -20,19 +20,19 @@ from lumen.language.robots import Body
 from lumen.project.packaged_models import mjcf_path
 
 _GEAR_INERTIA, _GEAR_DAMPING = 0.01, 0.01
-"""The armature [kg m^2] and damping [N m s/rad] of the joint that models the play.
+"""The armature [kg m^2] and damping [N m s/rad] of the joint that models a gear's play.
 
-Chosen: with smaller values the robot rattles at rest.
+With smaller values, the robot rattles at rest.
 """
 
 _STIFFNESS, _HARDNESS = (0.005, 1.0), (0.99, 0.999, 0.001)
-"""The stiffness of the ends of the gears' play: MuJoCo's `solreflimit` and `solimplimit`."""
+"""The stiffness at both ends of the gears' play: MuJoCo's `solreflimit` and `solimplimit`."""
 
 
 def loosen(robot: mjcf.RootElement, body: Body) -> None:
-    """Add backlash: give each turning joint a second joint behind it that no motor drives, free within the gear's play.
+    """Add backlash: a second joint behind each turning joint, without a motor and free within the gear's play.
 
-    The first joint keeps the motor's servo, friction and inertia. The link hangs on the second.
+    The first joint keeps its servo, friction and inertia. The second joint moves the link.
     """
     for name in body.joints:
         if name not in (*body.hands, *body.slides):
@@ -55,11 +55,11 @@ def loosen(robot: mjcf.RootElement, body: Body) -> None:
 
 
 def add_servos(robot: mjcf.RootElement, body: Body) -> None:
-    """Give a position servo to each joint that has none of its name; it replaces other motors of the joint.
+    """Replace each joint's motors by a position servo with the joint's name, unless such a servo exists.
 
     A servo reaches the joint's full `effort` at an error of `body.give` [rad] and is critically damped (MuJoCo's
-    `dampratio`, with the masses in the zero posture). Joints that the model lacks, or without a known effort, get none.
-    If `body.give` is 0, nothing changes.
+    `dampratio`, with the masses in the zero posture). Joints that the model lacks, that share another joint's motor or
+    whose effort is unknown get no servo. If `body.give` is 0, nothing changes.
     """
     if not body.give:
         return
@@ -91,10 +91,10 @@ def _serves(motor: mjcf.Element, name: str) -> bool:
 def load(
     body: Body, models: Path, hall: str, variation: Variation | None = None, *, backlash: bool = False
 ) -> mjcf.RootElement:
-    """Return the hall with the robot on its stage; `hall` is relative to `models`, or absolute.
+    """Return the hall with the robot on its stage; `hall` is a path, relative to `models` or absolute.
 
-    The robot can fall, unless its base is fixed: then it is part of its mount. Raises RobotError if a file is not MJCF,
-    or lacks elements that the simulation needs; the error lists all of them.
+    The robot can fall unless its base is fixed. Raises RobotError if a file is missing, is not MJCF or lacks elements
+    that the simulation needs; the error lists a file's missing elements.
     """
     world = read_hall(models, hall)
     place(world, hall, body, models, world.find("site", STAGE_SITE), backlash=backlash)
@@ -120,7 +120,7 @@ def place(
     backlash: bool,
     prefix: str = ROBOT_PREFIX,
 ) -> None:
-    """Attach a robot to a world at `site`. Raises RobotError as `load` does."""
+    """Attach a robot to a world at `site`. Raises RobotError as `load` does, or if the hall and the robot clash."""
     robot = alone(body, models)
     robot.model = prefix
     if backlash:
@@ -135,9 +135,9 @@ def place(
 
 
 def alone(body: Body, models: Path) -> mjcf.RootElement:
-    """Return the robot without a world and without a free joint, ready to be attached.
+    """Return the robot without a world or a free joint, ready to be attached.
 
-    Raises RobotError as `load` does, and for a body that has no MJCF.
+    Raises RobotError as `load` does, or if the body has no MJCF.
     """
     if not body.mjcf:
         raise RobotModelError(f"{body.name} has no MJCF: run it with --robot naoqi or --robot recording")
@@ -151,7 +151,7 @@ def alone(body: Body, models: Path) -> mjcf.RootElement:
 
 
 def compile_world(world: mjcf.RootElement) -> mujoco.MjModel:
-    """Return the world compiled by MuJoCo. Raises RobotError if MuJoCo can't build it."""
+    """Return the world as a compiled MuJoCo model. Raises RobotError if MuJoCo can't build it."""
     try:
         return mjcf.Physics.from_mjcf_model(world).model.ptr
     except Exception as error:  # The compiler raises exceptions of many types.
@@ -159,10 +159,7 @@ def compile_world(world: mjcf.RootElement) -> mujoco.MjModel:
 
 
 def _plain(error: Exception) -> str:
-    """Return the compiler's message without dm_control's advice.
-
-    Hashes in file names, and lines of the generated XML, are removed too.
-    """
+    """Return the compiler's message without dm_control's advice, hashes in file names, ids and line numbers."""
     reason = " ".join(str(error).split()).rpartition("Error: ")[2]
     return re.sub(r"-[0-9a-f]{40}(?=\.)|, id \d+, line \d+", "", reason)
 
@@ -183,7 +180,7 @@ def _read(path: Path) -> mjcf.RootElement:
 
 
 def _differ(robot: mjcf.RootElement, body: Body) -> None:
-    """Set the links' inertias and the camera's field of view to this body's: several bodies share one MJCF."""
+    """Set this body's link masses, link inertias and camera field of view: several bodies share one MJCF."""
     for name, link in body.links.items():
         inertial = robot.find("body", name).inertial
         inertial.mass, inertial.pos, inertial.fullinertia = link.mass, link.centre, link.inertia

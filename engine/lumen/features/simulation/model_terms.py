@@ -1,4 +1,4 @@
-"""The elements that the simulation needs in the MJCF of a robot and a hall, and the names of elements that it adds."""
+"""The MJCF elements that the simulation needs in a robot and a hall, and the names of those that it adds."""
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
@@ -8,18 +8,18 @@ from lumen.language.robots import Body
 from lumen.language.roles import LEG_ROLES, SIDES
 
 ROBOT_PREFIX = "nao"
-"""The prefix of the robot's elements in the hall: `nao/` and their own names."""
+"""The prefix of the robot's element names in the hall, such as `nao/LKneePitch`."""
 
 STAGE_SITE = "stage"
-"""The site of the hall that the robot is placed on."""
+"""The hall's site on which the robot is placed."""
 
 PLAY_SUFFIX = "Play"
-"""The suffix of the joint that models a joint's play: `LKneePitchPlay`."""
+"""The name suffix of a joint that models a gear's play, such as `LKneePitchPlay`."""
 
 
 @dataclass(frozen=True, slots=True)
 class Variation:
-    """The differences of a robot and hall from their models."""
+    """The differences between a robot in its hall and their models."""
 
     mass: float = 1.0
     """The factor of all masses."""
@@ -28,15 +28,15 @@ class Variation:
 
 
 MAX_TIMESTEP = 0.01
-"""The maximum timestep [s]: that of the commands to the joints."""
+"""The maximum timestep [s]: the period of the joint commands."""
 MIN_TIMESTEP = 0.0001
-"""The minimum timestep [s]: with a shorter one no computer keeps up with real time."""
+"""The minimum timestep [s]: with a shorter one, no computer keeps up with real time."""
 
 _HALL = (("site", "stage"), ("body", "visitor"), ("site", "visitor_face"))
 
 
 def lacks_of_robot(robot: mjcf.RootElement, body: Body) -> list[str]:
-    """Return, in words, the elements that a body and its roles name and that its MJCF lacks."""
+    """Return descriptions of the elements that a body or its roles name but its MJCF lacks."""
     roles, base = body.roles, body.roles.base
     driven = [name for name in body.joints if name not in body.shared]
     named = [
@@ -65,7 +65,7 @@ def wheel_motor(robot: mjcf.RootElement, wheel: str) -> str:
 
 
 def lacks_of_hall(hall: mjcf.RootElement) -> list[str]:
-    """Return, in words, the elements and settings that a hall's MJCF lacks."""
+    """Return descriptions of the required elements and settings that a hall's MJCF lacks."""
     found = list(_lacks(hall, _HALL))
     visitor = hall.find("body", "visitor")
     if visitor is not None and not visitor.mocap:
@@ -81,7 +81,7 @@ def lacks_of_hall(hall: mjcf.RootElement) -> list[str]:
 
 
 def lacks_of_body(body: Body) -> list[str]:
-    """Return, in words, the roles, joints and postures that a body lacks for the simulation."""
+    """Return descriptions of the roles, joints and postures that a body lacks for the simulation."""
     roles = body.roles
     if not roles.torso:
         return ["the role `torso`"]

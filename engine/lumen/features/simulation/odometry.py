@@ -1,4 +1,4 @@
-"""The robot's estimate of its feet's positions since its start, from encoders and the gyrometer's heading."""
+"""The robot's estimate of its feet's positions relative to its start, from encoders and the gyrometer's heading."""
 
 from collections.abc import Iterable, Mapping
 
@@ -14,22 +14,22 @@ _FEET = {"L": "left", "R": "right"}
 
 
 DRIFT_AFTER_SITTING, DRIFT_AFTER_LYING_BACK, DRIFT_AFTER_FALL = 0.1, 0.25, 0.6
-"""The distances that the robot may have moved when it stands again [m]: after sitting, lying on its back, or a fall.
+"""The possible displacement of a robot that stands up [m]: after sitting, after lying on its back, or after a fall.
 
-The last also holds after lying on its belly. Six robots of various weights on various floors were off by at most 0.05,
-0.13 and 0.47 m.
+The last value also applies after lying on its belly. Six robots of various weights on various floors were off by at
+most 0.05, 0.13 and 0.47 m.
 """
 
 
 DRIFT_AFTER_CATCH = 0.1
-"""The distance that the feet may have slid while steps caught a fall [m]."""
+"""The distance that the feet may have slid during steps that caught a fall [m]."""
 
 
 class Odometry:
-    """The positions of both soles in the frame of the robot's start. `stage`, in the same frame, bounds their steps.
+    """The poses of both soles in the frame of the robot's start. `stage`, in this frame, bounds the steps.
 
-    `doubt` is the possible error of the position [m] because the robot was down, since nothing measures how far it
-    slid. The growing error of its steps is only part of `whereabouts`.
+    `doubt` is the possible position error [m] from falls, other postures and caught falls, when nothing measures how
+    far the robot slides. Only `whereabouts` also includes the growing error of the steps.
     """
 
     def __init__(self, legs: LegGeometry, stage: Stage | None) -> None:
@@ -42,29 +42,26 @@ class Odometry:
 
     @property
     def whereabouts(self) -> Whereabouts:
-        """The estimate of the robot's position and its possible error."""
+        """The robot's estimated pose and the possible error."""
         return self._reckoning.whereabouts
 
     def lose(self, posture: str) -> None:
-        """Widen the estimate: the robot is in that posture or leaving it; empty if it has fallen."""
+        """Widen the estimate: the robot is in `posture` or leaving it, or has fallen if `posture` is empty."""
         if not self._down:
             self._down, self._before = True, self.doubt
         self.doubt = self._reckoning.slid = max(self.doubt, self._before + drift_after(posture))
 
     def stumble(self, heading: float) -> None:
-        """Inform the estimate that the feet stand with that heading [rad] after steps that caught a fall.
-
-        They may have slid.
-        """
+        """Set the heading of both feet [rad] after steps that caught a fall, during which the feet may have slid."""
         between = middle(self.feet)
         right = Pose(between.x, between.y, heading)
         self.land({side: right.then(foot.seen_from(between)) for side, foot in self.feet.items()})
         self.doubt = self._reckoning.slid = self.doubt + DRIFT_AFTER_CATCH
 
     def keep(self, heading: float) -> None:
-        """Inform the estimate that the robot stands with this heading by the gyrometer [rad].
+        """Record that the robot stands with this heading by the gyrometer [rad].
 
-        If it was down, its turn since then is added to the estimated heading.
+        If the robot was down, its turn since then is added to the estimated heading.
         """
         if self._down:
             self._down, (x, y, theta) = False, self._here
@@ -72,18 +69,18 @@ class Odometry:
         self._heading = heading
 
     def feel(self, angles: Mapping[str, float]) -> Feet:
-        """Return both feet, which stand with these angles of the legs [rad]; the point between them stays the same."""
+        """Return both feet's poses with the legs at these angles [rad]; the midpoint of the feet stays the same."""
         seen: Feet = {"L": Pose(), "R": self.legs.foot_from("L", angles)}
         between = middle(seen)
         self.feet = {side: self._here.then(foot.seen_from(between)) for side, foot in seen.items()}
         return self.feet
 
     def pass_by(self, feet: Feet) -> None:
-        """Set the estimate to the middle of these feet, while a walk is under way."""
+        """Set the estimate to the midpoint between these feet, during a walk."""
         self._believe(middle(feet))
 
     def land(self, feet: Feet) -> None:
-        """Set the estimate to these feet, which stand."""
+        """Set the feet, which stand, and with them the estimate."""
         self.feet = feet
         self._believe(middle(feet))
 
@@ -92,10 +89,10 @@ class Odometry:
         self._reckoning.follow(*here)
 
     def check(self, steps: Iterable[Footstep], drift: float = 0.0) -> None:
-        """Raise RobotError if a step goes more than `drift` [m] beyond the stage, unless the feet are that far already.
+        """Raise RobotError if a step ends more than `drift` [m] beyond both the stage and the feet's present extent.
 
-        With a doubtful position the stage is smaller by `doubt` on every side, so that the robot stays on it in any
-        case. If no room is left, no step is allowed.
+        The stage counts as smaller by `doubt` on every side, which keeps the robot on it despite the possible error.
+        Without a stage, every step is allowed.
         """
         if self._stage is None:
             return
@@ -121,7 +118,7 @@ class Odometry:
 
 
 def drift_after(posture: str) -> float:
-    """Return the possible displacement of a robot that was in that posture [m]; an empty posture means after a fall."""
+    """Return the possible displacement of a robot that was in `posture` [m]; an empty posture means a fall."""
     if posture == "LyingBack":
         return DRIFT_AFTER_LYING_BACK
     return DRIFT_AFTER_SITTING if posture and not lies(posture) else DRIFT_AFTER_FALL

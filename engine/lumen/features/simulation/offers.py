@@ -1,4 +1,4 @@
-"""The NAO in MuJoCo, through dm_control. Importing this imports both (`physics.py`)."""
+"""The simulated robot. Importing this module also imports MuJoCo and dm_control (`physics.py`)."""
 
 from lumen.features.simulation.rendering import available
 from lumen.features.simulation.robot import SimulatedRobot

@@ -1,9 +1,9 @@
-"""MuJoCo and dm_control, imported here for all other files of this folder, after OpenGL is chosen.
+"""Imports MuJoCo and dm_control for all other files of this folder, after choosing an OpenGL library.
 
-Raises MissingExtraError if they are not installed.
+Raises MissingExtraError if a package is not installed.
 """
 
-from lumen.features.simulation import gl as gl  # first: it chooses what MuJoCo draws with
+from lumen.features.simulation import gl as gl  # first: it chooses MuJoCo's OpenGL library
 from lumen.features.simulation import installed as installed  # isort: split
 
 import dm_control as dm_control

@@ -14,14 +14,14 @@ from lumen.features.simulation.contact_shadows import NO_SOLES, ContactShadows, 
 from lumen.features.simulation.physics import mujoco
 
 HIDDEN = mujoco.mjNGROUP - 1
-"""A group of geoms that is not drawn."""
+"""The geom group that is not drawn."""
 
 
 class FrustumCulling:
-    """Hides geoms of a model that are entirely outside the cone around a camera's picture; planes are never hidden.
+    """Hides a model's geoms that are entirely outside the cone around a camera's picture; planes are never hidden.
 
-    It changes the groups of the geoms. A picture without shadows stays the same. Most geoms of a robot are behind its
-    own cameras, so hiding them saves time.
+    Hiding changes the geoms' groups, but not a picture without shadows. It saves time, because most of a robot's geoms
+    are behind its camera.
     """
 
     def __init__(self, model: mujoco.MjModel) -> None:
@@ -29,7 +29,7 @@ class FrustumCulling:
         self._planes = model.geom_type == mujoco.mjtGeom.mjGEOM_PLANE
 
     def cull(self, data: mujoco.MjData, camera: str, aspect: float) -> None:
-        """Show only what this camera of the model may see; `aspect` is the picture's width divided by its height."""
+        """Hide the geoms that this camera can't see, and show the rest; `aspect` is the picture's width / height."""
         model, eye = self._model, data.camera(camera)
         slope = tan(radians(model.camera(camera).fovy[0]) / 2) * hypot(1.0, aspect)
         away = data.geom_xpos - eye.xpos
@@ -50,16 +50,16 @@ def available() -> str | None:
 
 @dataclass(frozen=True, slots=True)
 class RenderQuality:
-    """The quality, and so the cost, of a picture."""
+    """The settings that determine a picture's quality and cost."""
 
     shadows: int = 0
     """The width of the shadow map [px]; 0 for no shadows."""
     samples: int = 0
-    """The number of samples per pixel against aliasing; 0 for none."""
+    """The number of antialiasing samples per pixel; 0 for no antialiasing."""
     contact: bool = False
     """True to draw dark spots under the feet."""
     sides: tuple[int, int] | None = None
-    """The number of faces of round shapes, around and from top to bottom; None for those of the model."""
+    """The numbers of faces of round shapes, around and from top to bottom; None for the model's numbers."""
 
 
 CAMERA_QUALITY = RenderQuality(sides=(20, 12))
@@ -68,7 +68,7 @@ FILM_QUALITY = RenderQuality(shadows=2048, samples=4, contact=True)
 
 @dataclass(frozen=True, slots=True)
 class RenderState:
-    """A copy of everything that a picture of this moment depends on, so that it can be drawn later."""
+    """A copy of the state on which a picture depends, for drawing it later."""
 
     positions: NDArray[np.float64]
     """The positions of all joints, MuJoCo's `qpos` [m, rad]."""
@@ -87,7 +87,7 @@ class RenderState:
 
     @classmethod
     def of(cls, model: mujoco.MjModel, data: mujoco.MjData) -> "RenderState":
-        """Copy the present scene, about 9 kB."""
+        """Return a copy of the present scene, about 9 kB."""
         return cls(
             data.qpos.copy(),
             data.mocap_pos.copy(),
@@ -102,7 +102,7 @@ class RenderState:
 class SceneRenderer:
     """Draws scenes of one model, on any thread.
 
-    Each thread gets an OpenGL context of its own, which is made at its first picture.
+    Each thread gets its own OpenGL context for each picture size, created at its first picture of that size.
     """
 
     def __init__(self, model: mujoco.MjModel, quality: RenderQuality, soles: Soles = NO_SOLES) -> None:
@@ -118,10 +118,10 @@ class SceneRenderer:
         *,
         field_of_view: float | None = None,
     ) -> PixelArray:
-        """Return the picture of a scene through a camera of the model, by name, or through a free one.
+        """Return the picture of a scene through a named camera of the model or a free camera.
 
-        `width` and `height` are those of the picture [px]; `field_of_view` is the vertical angle of a free camera
-        [deg].
+        `width` and `height` are the picture's size [px]. `field_of_view` is a free camera's vertical angle [deg]; None
+        keeps the last one.
         """
         cameras: dict[tuple[int, int], _Canvas] = self._local.__dict__.setdefault("canvases", {})
         canvas = cameras.get((width, height))
@@ -130,13 +130,13 @@ class SceneRenderer:
         return canvas.draw(scene, camera, field_of_view)
 
     def close(self) -> None:
-        """Close the contexts of the calling thread; those of other threads stay until the program ends."""
+        """Close the calling thread's contexts; other threads' contexts stay open until the program ends."""
         for canvas in self._local.__dict__.pop("canvases", {}).values():
             canvas.close()
 
 
 class _Canvas:
-    """A renderer with a model and state of its own, for one thread and one size of picture."""
+    """A renderer with its own model and state, for one thread and one picture size."""
 
     def __init__(self, model: mujoco.MjModel, quality: RenderQuality, soles: Soles, width: int, height: int) -> None:
         self._model = copy.copy(model)
@@ -148,7 +148,7 @@ class _Canvas:
         self._model.vis.global_.offheight = max(height, self._model.vis.global_.offheight)
         self._data = mujoco.MjData(self._model)
         self._renderer = mujoco.Renderer(self._model, height, width, max_geom=2000)
-        atexit.register(self.close)  # after mujoco's own handler, so it runs before that one ends OpenGL
+        atexit.register(self.close)  # registered after mujoco's handler, so it runs before mujoco ends OpenGL
         self._renderer.scene.flags[mujoco.mjtRndFlag.mjRND_SHADOW] = bool(quality.shadows)
         self._contact = ContactShadows(self._model, soles) if quality.contact else None
         self._culling, self._aspect = None if quality.shadows else FrustumCulling(self._model), width / height

@@ -1,4 +1,4 @@
-"""The simulated robot behind the `Robot` interface, in a hall behind the `Hall` interface."""
+"""The simulated robot in its hall, which implements the `Robot` and `Hall` interfaces."""
 
 from collections.abc import Callable, Collection, Mapping, Sequence
 from functools import cached_property
@@ -46,7 +46,7 @@ from lumen.robot.skill_runner import SkillRunner
 
 
 class RobotCamera:
-    """The robot's camera: it takes images that another thread draws later, and computes where points appear in them."""
+    """The robot's camera: it takes images that another thread can draw later, and projects points into them."""
 
     def __init__(self, world: World, camera: Camera) -> None:
         self._world, self._camera = world, camera
@@ -54,7 +54,7 @@ class RobotCamera:
         self._renderer = None if available() else SceneRenderer(world.model, CAMERA_QUALITY)
 
     def image(self, now: float) -> Image | None:
-        """Return an image of this moment, drawn when its pixels are requested; None if nothing can be drawn."""
+        """Return an image of the present scene, drawn when its pixels are requested; None if nothing can be drawn."""
         if self._renderer is None:
             return None
         studio, camera, name = self._renderer, self._camera, self._name
@@ -72,13 +72,13 @@ class RobotCamera:
         return project((-float(back), -float(right), float(up)), self._camera)
 
     def close(self) -> None:
-        """Close this thread's OpenGL context."""
+        """Close this thread's OpenGL contexts."""
         if self._renderer:
             self._renderer.close()
 
 
 class AimController:
-    """Moves the goals of joints that no command owns; a later aim of a joint replaces an earlier one."""
+    """Moves the goals of joints that no command owns; a joint's new aim replaces its earlier one."""
 
     def __init__(self, motors: Motors) -> None:
         self._motors = motors
@@ -92,7 +92,7 @@ class AimController:
             self._aims[name] = angle, speed
 
     def advance(self, dt: float, free: Callable[[str], bool]) -> None:
-        """Advance by `dt` [s]; a joint's aim ends when the goal reaches it, or when `free` is false for the joint."""
+        """Advance by `dt` [s]; a joint's aim ends when its goal reaches it, or if `free` is False for the joint."""
         moved = {}
         for name, (angle, speed) in list(self._aims.items()):
             if not free(name):
@@ -110,18 +110,18 @@ _EMPTY = "battery-empty"
 """The id of the `Rest` that an empty battery triggers."""
 
 STANDING_TILT = 0.3
-"""The tilt of the torso below which the robot counts as standing [rad]."""
+"""The torso's tilt below which the robot counts as standing [rad]."""
 
 _CONDITION_EVERY = 10
-"""The number of control periods between two updates of battery and heat."""
+"""The number of control periods between two updates of the battery and the motors' heat."""
 
 
 class SimulatedRobot(ExecutingRobot):
-    """A robot under physics, on its stage; its time passes only in `advance`, in the caller's thread.
+    """A physically simulated robot on its stage; its time passes only in `advance`, in the caller's thread.
 
-    `models` is the folder of the MJCF files, `hall` the name of one of them. The same seed and calls give the same run.
-    The default imperfections are those of a NAO; `stage` bounds the robot's steps. If robots share a `world` and the
-    visitor's `figure`, the owner of the world calls `act` and `feel` instead of `advance`. Raises RobotError if the
+    `models` is the folder of the MJCF files, and `hall` is one of these files. The same seed and calls give the same
+    run. The default imperfections are a NAO's. `stage` bounds the robot's walks and drives. If robots share a `world`
+    and the visitor's `figure`, the world's owner calls `act` and `feel` instead of `advance`. Raises RobotError if the
     models are unusable.
     """
 
@@ -176,7 +176,7 @@ class SimulatedRobot(ExecutingRobot):
         self._until = 0.0
 
     def _made_base(self, models: Path, hazards: Hazards, lacking: Imperfections, stage: Stage | None) -> RobotBase:
-        """Make the base of this body. Raises LumenError, with the name of the package, if the base's row is faulty."""
+        """Make this body's base. Raises LumenError, with the package's name, if the base's row is faulty."""
         base = self.body.roles.base
         feature, simulate = owner("bases", base.kind), base.row.simulate
 
@@ -207,7 +207,7 @@ class SimulatedRobot(ExecutingRobot):
         return self._skills.awake
 
     def speak_with(self, voice: SpeechPlayback) -> None:
-        """Use this voice for texts; the voice decides how long each text takes."""
+        """Use this voice for spoken texts; the voice determines each text's duration."""
         self._skills.voice = voice
 
     def sound_with(self, playback: SoundPlayback) -> None:
@@ -226,7 +226,7 @@ class SimulatedRobot(ExecutingRobot):
             self.feel()
 
     def start(self, id: str, command: RobotCommand) -> None:
-        """Begin a command, whose events `poll` returns under `id`; `Aim` and `Live` cause no such events.
+        """Begin a command; `poll` returns its events under `id`. `Aim` and `Live` cause no such events.
 
         An `Aim` is ignored if the motors are off or the robot has fallen.
         """
@@ -247,13 +247,13 @@ class SimulatedRobot(ExecutingRobot):
         return events
 
     def read(self, sense: Sense) -> Reading | None:
-        """Return the present reading of a sense, None if the robot lacks it."""
+        """Return the present reading of a sense; None if the robot lacks it or an image can't be drawn."""
         measure = self._senses.get(sense)
         return measure() if measure else None
 
     @cached_property
     def _senses(self) -> Mapping[str, Callable[[], Reading | None]]:
-        """The method that measures each sense."""
+        """The methods that measure the senses."""
         return {
             IMAGE: self._image,
             JOINT: self._joints,
@@ -283,7 +283,7 @@ class SimulatedRobot(ExecutingRobot):
         return Battery(self.time, condition.percentage, condition.plugged, condition.charging)
 
     def close(self) -> None:
-        """Release the camera and end the programs of skills."""
+        """End the skills' programs and close the camera."""
         self._skill_runner.close()
         if self._camera:
             self._camera.close()
@@ -296,14 +296,11 @@ class SimulatedRobot(ExecutingRobot):
         self._skill_runner.set_ends(ends)
 
     def place(self, visitor: Visitor | None) -> None:
-        """Put the visitor at this place, or remove the visitor with None."""
+        """Put the visitor at this place; None removes the visitor."""
         self.figure.place(visitor)
 
     def face(self) -> tuple[float, float] | None:
-        """Return the pixel of the visitor's face in the image.
-
-        Return None without a visitor or a camera, or if the face is outside the image.
-        """
+        """Return the pixel of the visitor's face; None without a visitor or camera, or if the image lacks the face."""
         face = self.figure.face()
         return self._camera.pixel(face) if face and self._camera else None
 
@@ -315,7 +312,7 @@ class SimulatedRobot(ExecutingRobot):
         self._feel_touch({sensor})
 
     def _feel_touch(self, touched: Collection[str] = ()) -> None:
-        """Update the pressed sensors and queue events of changes; the visitor causes those of sensors in `touched`."""
+        """Update the pressed sensors and queue events for changes; the visitor causes those of sensors in `touched`."""
         now = self._held | self._tactile.pressed()
         for sensor, before in self._pressed.items():
             if before != (sensor in now):
@@ -326,7 +323,7 @@ class SimulatedRobot(ExecutingRobot):
                 self._events.append(Event("released" if before else "touched", {"sensor": sensor}, self.time, cause=by))
 
     def sound(self) -> None:
-        """Let the robot hear a sound from the visitor's face."""
+        """Let the robot hear a sound from the visitor's face; do nothing without a visitor or a camera."""
         face = self.figure.face()
         if face is not None and self.body.camera:
             torso = self.world.data.body(f"{self.world.prefix}/{self.body.roles.torso}")
@@ -373,7 +370,7 @@ class SimulatedRobot(ExecutingRobot):
         self._watch(self.time)
 
     def _live(self, now: float) -> None:
-        """Add small lifelike movements to joints that nothing else moves.
+        """Add small lifelike movements to body parts that no command owns.
 
         A fallen robot makes none; a robot that is not on its feet moves only its head.
         """
@@ -387,11 +384,11 @@ class SimulatedRobot(ExecutingRobot):
         self.lights.wear_eyes(self._life.eyes(now))
 
     def _free(self, joint: str) -> bool:
-        """Return True if no command owns that joint and the motors are on."""
+        """Return True if no command owns the joint's body part and the motors are on."""
         return self.awake and not self._executor.owner(self._skills.part(joint))
 
     def _watch(self, now: float) -> None:
-        """Detect a fall, and update the position; update battery and heat every few periods."""
+        """Update touch and position, detect a fall, and update battery and heat every `_CONDITION_EVERY` periods."""
         tilt = self.world.tilt
         self._feel_touch()
         upright = self._skills.upright
@@ -414,13 +411,13 @@ class SimulatedRobot(ExecutingRobot):
             self._calm()
 
     def _calm(self) -> None:
-        """Reduce lifelike movements of parts with warm motors, and of all parts if the battery is low."""
+        """Reduce the lifelike movements of body parts with warm motors, and of all parts if the battery is low."""
         for part, joints in self.body.parts.items():
             warmest = max((self.condition.temperatures[self.motors.index[joint]] for joint in joints), default=0.0)
             self._vigour[part] = vigour(float(warmest), self.condition.percentage)
 
     def _exhaust(self) -> None:
-        """Rest at once when the battery becomes empty: the remaining energy suffices to reach Crouch."""
+        """Start `Rest` when the battery becomes empty: the remaining energy suffices to reach Crouch."""
         if self.condition.empty and self.awake and not self._exhausted:
             self._executor.start(_EMPTY, Rest())
         self._exhausted = self.condition.empty

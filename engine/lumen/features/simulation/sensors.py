@@ -22,10 +22,10 @@ from lumen.motion.gait.poses import wrap
 
 
 class MeanRates:
-    """The average rates [rad/s] at which the axes turned about themselves in the last control period.
+    """The average rates [rad/s] of a sensor's rotation about its own axes in the last control period.
 
-    A real gyrometer filters, and so reports averages. With the instantaneous rate of each period, the robot would turn
-    3 % too slowly, because motors jerk once in each period. `axes` (9,) change with the world; None always gives 0.
+    A real gyrometer filters, and so reports averages. With instantaneous rates, the robot would turn 3 % too slowly,
+    because motors jerk once in each period. `axes`, Shape (9,), change with the world; with None, the rates are 0.
     """
 
     def __init__(self, axes: NDArray[np.float64] | None) -> None:
@@ -49,13 +49,13 @@ LEARNING_PERIODS = 1200
 """The time constant of the learned bias, in control periods at rest."""
 
 REST, REST_SPREAD = 10, 0.05
-"""The robot counts as at rest if the readings of this many control periods differ by less than this [rad/s]."""
+"""The number of control periods, and the spread of their readings [rad/s] below which the robot counts as at rest."""
 
 
 class GyroCalibration:
-    """Learns the gyrometer's `bias` [rad/s], Shape (3,), whenever the robot is at rest, starting from a known one.
+    """Learns the gyrometer's `bias` [rad/s], Shape (3,), from a known start value, whenever the robot is at rest.
 
-    It averages over twelve seconds, in which breathing and shifts of weight turn the robot to and fro equally.
+    Averaging over twelve seconds cancels the rotations of breathing and weight shifts.
     """
 
     def __init__(self, bias: NDArray[np.float64]) -> None:
@@ -72,10 +72,10 @@ class GyroCalibration:
 
 
 class Gyrometer:
-    """A gyrometer with noise and a bias that drifts as the robot warms up; it subtracts the bias learned at rest.
+    """A gyrometer with noise and a bias that drifts as the robot warms up; the bias learned at rest is subtracted.
 
-    The robot is assumed to have rested before the run, so the learned bias has only a small error. Each seed has its
-    own bias.
+    The robot is assumed to have rested before the run, so the learned bias begins with only a small error. Each seed
+    gives a different bias.
     """
 
     def __init__(self, lacking: Imperfections, seed: int) -> None:
@@ -88,10 +88,10 @@ class Gyrometer:
         self._periods = 0
 
     def feel(self, rates: tuple[float, float, float], errors: NDArray[np.float64], *, at_rest: bool) -> list[float]:
-        """Return the measured rates [rad/s] one control period later.
+        """Return the measured rates of the next control period [rad/s].
 
-        `rates` are the true ones, and `errors` draws of the standard normal distribution. `at_rest` means that nothing
-        moves the robot on purpose.
+        `rates` are the true rates, and `errors` are draws from the standard normal distribution. `at_rest` means that
+        nothing moves the robot on purpose.
         """
         self._periods += 1
         warmer = WARMING * (1.0 - exp(-self._periods * CONTROL_PERIOD / WARMING_TIME))
@@ -107,9 +107,9 @@ _INERTIAL = [f"{kind}{axis}" for kind in ("Angle", "Gyroscope", "Accelerometer")
 class BodySensors:
     """Reads joint angles and rates as the robot's own computer would; the same seed gives the same noise.
 
-    `gyro` are the last measured rates of rolling right and pitching forward [rad/s], `turning` that of turning left,
-    each without the learned bias. `heading` is the angle turned left since the start [rad]. After lying or sitting, its
-    error is at most 3 degrees, because gravity keeps the attitude level while the gyrometer turns it.
+    `gyro` has the last measured rates of rolling right and pitching forward [rad/s], and `turning` is the rate of
+    turning left, all without the learned bias. `heading` is the angle turned left since the start [rad]. After lying or
+    sitting, its error is at most 3 degrees, because gravity keeps the estimated attitude level.
     """
 
     def __init__(self, world: World, lacking: Imperfections, seed: int = 0) -> None:
@@ -130,10 +130,10 @@ class BodySensors:
 
     @property
     def inertial(self) -> dict[str, float]:
-        """The inertial unit by NAOqi's names: angles [rad], rates [rad/s], accelerations [m/s^2] in the torso's axes.
+        """The inertial unit's angles [rad], rates [rad/s] and accelerations [m/s^2] by NAOqi's names, in the torso's axes.
 
-        X is forward, Y left, Z up; AngleX is roll, AngleY pitch, AngleZ the angle turned since the start. At rest the
-        accelerometer measures the floor's upward force: Z is 9.81.
+        X is forward, Y left, Z up. AngleX is roll, AngleY pitch, AngleZ the angle turned left since the start. At rest,
+        the accelerometer measures the floor's upward force: Z is 9.81.
         """
         forward, left, up = self._world.up
         turning, pushed = (self.gyro[0], self.gyro[1], self.turning), self._world.acceleration
@@ -141,9 +141,9 @@ class BodySensors:
         return {name: round(v, 4) for name, v in zip(_INERTIAL, (*angles, *turning, *pushed), strict=True)}
 
     def feel(self, *, at_rest: bool) -> None:
-        """Read encoders and gyrometer; call it once in each control period.
+        """Read the encoders and the gyrometer; call this once in each control period.
 
-        `at_rest` means that nothing moves the legs on purpose: then the gyrometer's reading is its bias.
+        `at_rest` means that nothing moves the legs on purpose, so the gyrometer's average reading is its bias.
         """
         angles, step = self._world.angles, self._step
         errors = self._random.standard_normal(len(angles) + 3)
@@ -154,7 +154,7 @@ class BodySensors:
         self._turn(roll, pitch, yaw)
 
     def _turn(self, roll: float, pitch: float, yaw: float) -> None:
-        """Turn the estimated attitude by the gyrometer's rates, and level it with the measured direction of up."""
+        """Turn the estimated attitude by the gyrometer's rates, level it by the direction of up, and update the heading."""
         axes, (x, y, z) = self._axes, self._world.up
         _, _, _, _, _, _, u, v, w = axes.tolist()
         self._turns[:] = (

@@ -1,4 +1,4 @@
-"""Set up robots under physics: one, or several in one hall, which can see and push each other."""
+"""Set up one simulated robot, or several in one hall, which can see and push each other."""
 
 from collections.abc import Mapping
 from math import cos, sin
@@ -35,10 +35,10 @@ class HallRobot(NamedTuple):
 
 
 class SharedHall:
-    """Robots by name in one hall, whose time passes only in `advance`, in the caller's thread.
+    """Robots, by name, in one hall, whose time passes only in `advance`, in the caller's thread.
 
-    `models` is the folder of the hall's MJCF. The hall has one visitor, whom all robots can see and each of them can
-    move. Raises RobotError if the models are unusable.
+    `models` is the folder of the hall's MJCF. The hall has one visitor, whom all robots can see and any robot's `place`
+    moves. Raises RobotError if the models are unusable.
     """
 
     def __init__(self, robots: Mapping[str, HallRobot], models: Path, hall: str, *, posture: str = "Stand") -> None:
@@ -95,7 +95,7 @@ def _physics(robots: Mapping[str, HallRobot], prefixes: Mapping[str, str], model
 
 
 def set_up(request: RobotRequest) -> Setup:
-    """Return a standing robot with a clock of simulated time. Raises RobotError if the models are unusable."""
+    """Return a standing robot with a simulated clock. Raises RobotError if the models are unusable."""
     project = request.project
     robot = SimulatedRobot(project.body, *model_files(project), imperfections=lacking_in(request), stage=project.stage)
     return Setup(robot, SimulatedClock(robot.advance, request.pace), robot, available() or "")
@@ -121,7 +121,7 @@ def set_up_house(requests: Mapping[str, RobotRequest]) -> dict[str, Setup]:
 
 
 def lacking_in(request: RobotRequest) -> Imperfections:
-    """Return the imperfections of a robot: those of `--imperfections`, else the project's.
+    """Return a robot's imperfections, from `--imperfections` if given, else from the project.
 
     Raises UsageError if the option has an unknown name.
     """

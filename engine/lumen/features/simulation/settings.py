@@ -1,26 +1,26 @@
-"""The switches for the imperfections of a simulated robot: False makes the robot perfect in that respect."""
+"""The switches for a simulated robot's imperfections; False removes an imperfection."""
 
 from dataclasses import dataclass, fields
 
 
 @dataclass(frozen=True, slots=True)
 class Imperfections:
-    """The imperfections of a simulated robot."""
+    """A simulated robot's imperfections."""
 
     noise: bool = True
     """True if sensors have noise."""
     quantisation: bool = True
-    """True if encoders give whole steps."""
+    """True if encoders report whole steps."""
     gyro_bias: bool = True
-    """True if the gyrometer measures a turn of a robot that does not turn."""
+    """True if the gyrometer measures a rotation while the robot is still."""
     latency: bool = True
     """True if a command acts one control period later."""
     backlash: bool = True
     """True if gears have play."""
     torque_speed: bool = True
-    """True if the torque of a motor falls with its speed."""
+    """True if a motor's torque decreases with its speed."""
     supply: bool = True
-    """True if the torque of a motor falls with the battery's voltage."""
+    """True if a motor's torque decreases with the battery's voltage."""
 
 
 IMPERFECTIONS = tuple(field.name for field in fields(Imperfections))

@@ -2,8 +2,8 @@
 
     python -m lumen.features.simulation.shells models/nao
 
-They affect only the robot's looks. Proportions follow the published dimensions (link lengths, positions of sensors, the
-outline of the sole); lengths are in [mm], in the link's frame.
+They affect only the robot's looks. Proportions follow the published dimensions (link lengths, sensor positions, the
+sole's outline). Coordinates are in the link's frame [mm].
 """
 
 import sys
@@ -16,9 +16,9 @@ from numpy.typing import NDArray
 
 Vertices = NDArray[np.float64]
 CrossSection = tuple[float, float, float, float, float, float]
-"""A section: position along the axis, centre (x, y) of the ring, half widths (x, y), exponent.
+"""A section: position along the axis, centre (x, y) of the ring and half widths (x, y) [mm], and exponent.
 
-The exponent is 2 for an ellipse, more for a box.
+An exponent of 2 gives an ellipse; larger exponents approach a box.
 """
 
 SEGMENTS, BLEND_STEPS = 28, 3
@@ -35,9 +35,9 @@ class Loft:
     axis: str = "z"
 
     def skin(self, s: Vertices, theta: Vertices, offset: float = 0.0) -> Vertices:
-        """Return points of the skin at the shares `s` (0..1) of the length and the angles `theta` [rad].
+        """Return points `offset` [mm] outside the skin, Shape (s, theta, 3).
 
-        They are `offset` [mm] outside the skin; Shape (s, theta, 3).
+        They are at the shares `s` (0..1) of the length and the angles `theta` [rad].
         """
         along, cx, cy, a, b, n = _through(np.array(self.sections), s).T[:, :, None]
         c, d = np.cos(theta)[None], np.sin(theta)[None]
@@ -66,11 +66,11 @@ class Loft:
 
 @dataclass(frozen=True)
 class ShellPanel:
-    """A slab on a part of a loft's skin."""
+    """A slab that covers part of a loft's skin."""
 
     loft: Loft
     span: tuple[float, float]
-    """The shares of the loft's length at which it begins and ends."""
+    """The shares of the loft's length at which the slab begins and ends."""
     arc: tuple[float, float]
     """The angles at which the slab begins and ends [deg]."""
     rise: float = 1.0
@@ -97,15 +97,15 @@ class ShellPanel:
 
 @dataclass(frozen=True)
 class Ring:
-    """A torus around z of radius 1000 (scaled by the MJCF)."""
+    """A torus around z with a radius of 1000 mm, which the MJCF scales."""
 
     thick: float
-    """Half the ring's thickness in the direction of the radius [mm]."""
+    """Half the ring's radial thickness [mm]."""
     flat: float
     """Half the ring's thickness along z [mm]."""
 
     def mesh(self) -> tuple[Vertices, NDArray[np.int64]]:
-        """Return the vertices and triangles of the torus: Shape (n, 3) each."""
+        """Return the vertices [mm] and triangles of the torus: Shape (n, 3) each."""
         around, across = np.linspace(0, 2 * np.pi, 32, endpoint=False), np.linspace(0, 2 * np.pi, 8, endpoint=False)
         radius = 1000 + self.thick * np.cos(across)[:, None]
         x, y = radius * np.cos(around), radius * np.sin(around)
@@ -116,7 +116,7 @@ class Ring:
 
 
 def _through(sections: Vertices, s: Vertices) -> Vertices:
-    """Return the sections at the shares `s` (0..1) of the length, by a Catmull-Rom spline: Shape (len(s), columns)."""
+    """Return the sections interpolated at the shares `s` (0..1) by a Catmull-Rom spline: Shape (len(s), columns)."""
     position = s * (len(sections) - 1)
     i = np.minimum(position.astype(int), len(sections) - 2)
     t = (position - i)[:, None]
@@ -204,7 +204,7 @@ SHELLS: dict[str, Loft | ShellPanel | Ring] = {
 
 
 def write(folder: Path) -> None:
-    """Write every shell as `NAME.obj`, in [m]."""
+    """Write every shell into `folder` as `NAME.obj`, in [m]."""
     folder.mkdir(parents=True, exist_ok=True)
     for name, shell in SHELLS.items():
         vertices, faces = shell.mesh()

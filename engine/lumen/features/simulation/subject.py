@@ -20,20 +20,17 @@ EXHAUSTED_TORQUE = 0.98
 """The share of its maximum torque above which a motor counts as exhausted."""
 
 LAG_TOLERANCE = 0.05
-"""The distance of a joint from its goal beyond which it counts as late [rad]."""
+"""The distance from its goal beyond which a joint counts as late [rad]."""
 
 MASS_RANGE, FRICTION_RANGE, USUAL_FRICTION = (0.9, 1.1), (0.5, 1.0), 0.8
-"""The ranges from which variants are drawn: the factor of each link's mass, and the ground's friction.
-
-The third value is the friction of the unchanged model.
-"""
+"""A variant's ranges of link mass factors and ground friction, and the unchanged model's ground friction."""
 
 
 class ExaminedRobot(SimulatedRobot):
     """A simulated robot that reports how hard its motion strains it."""
 
     def strain(self) -> Strain:
-        """Return the present strain: tilt, self-contacts, load on the soles, exhausted motors and late joints."""
+        """Return the motion's progress, the tilt, self-contacts, sole loads, exhausted motors and late joints."""
         motors, playing = self.motors, self._skills.playing
         late = np.abs(motors.goal - self.world.angles)
         full = (np.abs(self.world.torques) >= EXHAUSTED_TORQUE * motors.effort) & (motors.effort > 0.0)
@@ -52,9 +49,9 @@ class ExaminedRobot(SimulatedRobot):
         return frozenset((one, other) for one, other in pairs)
 
     def _touches(self) -> Iterator[tuple[tuple[str, str], float]]:
-        """Yield the names of the two parts in each contact, and the contact's normal force [N].
+        """Yield the names of both geoms in each contact, and the contact's normal force [N].
 
-        The name is empty for anything but the robot.
+        A name is empty if the geom is not the robot's.
         """
         model, data, force = self.world.model, self.world.data, np.zeros(6)
         for i, (one, other) in enumerate(data.contact.geom.tolist()):
@@ -62,7 +59,7 @@ class ExaminedRobot(SimulatedRobot):
             yield (self._link(one), self._link(other)), float(force[0])
 
     def _link(self, geom: int) -> str:
-        """Return the name of a geom of the robot, or its link's if it has none; empty for other geoms."""
+        """Return a robot geom's name, or its link's if the geom is unnamed; empty for other geoms."""
         model = self.world.model
         link = str(model.body(model.geom_bodyid[geom]).name)
         name = str(model.geom(geom).name) or link
@@ -87,9 +84,10 @@ class ExaminedRobot(SimulatedRobot):
 def subject(
     body: Body, models: Path, hall: str, brother: int, imperfections: Imperfections | None = None
 ) -> ExaminedRobot:
-    """Return the robot as its model describes it if `brother` is 0, else a variant with that seed.
+    """Return the unchanged robot if `brother` is 0, else a variant with that seed.
 
-    A variant differs in its links' masses, the ground's friction and its sensors' errors.
+    A variant differs in its link masses, ground friction and sensor errors. Raises RobotError if the models are
+    unusable.
     """
     if not brother:
         return ExaminedRobot(body, models, hall, imperfections=imperfections)

@@ -14,7 +14,7 @@ _AWAY = (0.0, 0.0, -10.0)
 
 
 class VisitorFigure:
-    """Moves and scales the hall's body `visitor`; it is out of sight until placed."""
+    """Moves and scales the hall's body `visitor`, which is out of sight until placed."""
 
     def __init__(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
         self._model, self._data = model, data
@@ -32,7 +32,7 @@ class VisitorFigure:
         self.place(None)
 
     def place(self, visitor: Visitor | None) -> None:
-        """Place the figure on the floor at that visitor's position, facing the robot's start; None removes it."""
+        """Place the figure on the floor at the visitor's position, facing the robot's start; None removes it."""
         changed = visitor and (self._visitor is None or visitor.height != self._visitor.height)
         self._visitor = visitor
         if visitor is None:
@@ -45,7 +45,7 @@ class VisitorFigure:
             self._scale(visitor.height / FIGURE_HEIGHT)
 
     def face(self) -> tuple[float, float, float] | None:
-        """Return the middle of the face in the hall [m]; None without a visitor."""
+        """Return the position of the face in the hall [m]; None without a visitor."""
         if self._visitor is None:
             return None
         x, y, z = self._face * (self._visitor.height / FIGURE_HEIGHT)

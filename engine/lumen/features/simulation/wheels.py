@@ -32,18 +32,18 @@ class Wheels:
 
     @property
     def whereabouts(self) -> Whereabouts:
-        """The robot's estimate of its position, and its possible error."""
+        """The robot's estimated pose and the possible error."""
         return self.odometry.whereabouts
 
     @property
     def soles(self) -> Soles:
-        """No soles: wheels have none."""
+        """An empty mapping: wheels have no soles."""
         return NO_SOLES
 
     def walk(self, command: Walk | Move, now: float) -> Activity:
-        """Begin to drive, or change the speed of the present drive.
+        """Begin a drive, or change the present drive's speed, and return its activity.
 
-        Raises RobotRefusedError for a sideways speed, a hazard, or a place beyond the stage.
+        Raises RobotError for an invalid goal, a sideways speed, a hazard, or a place beyond the stage.
         """
         way = way_of(command)
         if isinstance(way, Velocity):
@@ -67,7 +67,7 @@ class Wheels:
             raise RobotRefusedError(f"{reason}: the robot did not start driving")
 
     def steady(self, now: float, *, standing: bool, upright: bool) -> JointVector:
-        """Turn the wheels as steered, or brake if the robot does not stand; return no corrections for the joints."""
+        """Turn the wheels as steered, or brake if the robot is not standing; return zero corrections for the joints."""
         self.odometry.feel(CONTROL_PERIOD)
         if standing:
             self.drive.turn_wheels()
@@ -86,5 +86,5 @@ class Wheels:
             self.odometry.lose()
 
     def keep(self, heading: float) -> None:
-        """Inform the odometry that the robot stands again."""
+        """Inform the odometry that the robot stands."""
         self.odometry.keep()

@@ -16,7 +16,7 @@ from lumen.language.robots import Body
 from lumen.language.roles import SIDES
 
 CONTROL_PERIOD = 0.01
-"""The time between two commands to the joints [s]."""
+"""The time between two joint commands [s]."""
 
 _UNSTABLE = [
     int(w)
@@ -25,10 +25,10 @@ _UNSTABLE = [
 
 
 class World:
-    """MuJoCo's model and state, read in the body's own order of joints. Only the thread that steps it may use it.
+    """MuJoCo's model and state, read in the body's joint order. Only the thread that steps the world may use it.
 
-    `model` and `data` are MuJoCo's; `physics` is dm_control's view of the same memory. Several robots may share one
-    world, which is passed as `shared`: then the names of each robot's elements begin with its `prefix`.
+    `model` and `data` are MuJoCo's; `physics` is dm_control's view of the same memory. Several robots can share one
+    world, passed as `shared`. The names of each robot's elements begin with its `prefix`.
     """
 
     def __init__(
@@ -63,7 +63,7 @@ class World:
         roles = body.roles
         self.torso = self.model.body(f"{prefix}/{roles.torso}").id
         self.free = roles.base.row.moves
-        """True if the robot can leave the place of its attachment."""
+        """True if the robot can leave the point where it was attached."""
         self._soles = [f"{prefix}/{roles.soles[side]}" for side in SIDES if side in roles.soles]
         self._root = self.model.joint(f"{prefix}/").qposadr[0] if self.free else 0
         self._accelerometer = self._sensor(roles.sensors.accelerometer)
@@ -80,17 +80,14 @@ class World:
     def step(self) -> None:
         """Advance one control period.
 
-        As after dm_control's `step`, everything that depends on the position is computed.
+        Like dm_control's `step`, leave everything that depends on the positions up to date.
         """
         mujoco.mj_step2(self.model, self.data)
         mujoco.mj_step(self.model, self.data, self._substeps - 1)
         mujoco.mj_step1(self.model, self.data)
 
     def check(self) -> None:
-        """Raise RobotError if MuJoCo has warned of values that are not finite or are too large.
-
-        These are positions, speeds and accelerations.
-        """
+        """Raise RobotError if MuJoCo has warned of non-finite or too large positions, speeds or accelerations."""
         if self._warnings[_UNSTABLE].any():
             raise RobotModelError(
                 "the simulation has become unstable: check the positions, sizes and forces in models/"
@@ -98,7 +95,7 @@ class World:
 
     @property
     def angles(self) -> JointVector:
-        """The joints' angles, measured behind the play of their gears [rad; hands 0..1]."""
+        """The joints' angles, including the play of their gears [rad; hands 0..1]."""
         qpos = self.data.qpos
         measured: JointVector = qpos.take(self._angles)
         measured[self._loose] += qpos.take(self._plays)
@@ -125,7 +122,7 @@ class World:
 
     @property
     def acceleration(self) -> tuple[float, float, float]:
-        """The accelerometer's reading in the torso's axes: forward, left, up [m/s^2]."""
+        """The accelerometer's reading in the torso's axes: forward, left, up [m/s^2]; zeros without a sensor."""
         x, y, z = self._felt(self._accelerometer)
         return x, y, z
 
@@ -141,10 +138,10 @@ class World:
         return acos(min(1.0, max(-1.0, float(self._torso_axes[8]))))
 
     def set_up(self, angles: Mapping[str, float]) -> None:
-        """Put the robot on its stage in this posture: both soles flat, the point between its feet at the stage's site.
+        """Put the robot on its stage in this posture, with flat soles and the stage's site midway between its feet.
 
-        A robot without feet is placed with its lowest point where it was attached. Use this only to begin a run:
-        afterwards only its motors move the robot. Raises RobotError if a geom of the hall has a position that is not
+        A robot without two feet is placed with its lowest point at the site; a fixed base stays in place. Use this only
+        to begin a run: afterwards, only the motors move the robot. Raises RobotError if a geom's position is not
         finite.
         """
         data, root = self.data, self._root
@@ -174,7 +171,7 @@ class World:
             raise RobotModelError(f"geoms in models/ have a position that is not a number: {', '.join(lost)}")
 
     def _lowest(self) -> float:
-        """Return the height of the robot's lowest geom that can touch something [m]."""
+        """Return the height of the lowest point of the robot's geoms that can touch something [m]."""
         model, data = self.model, self.data
         whole = model.body_rootid[self.torso]
         touching = (model.geom_contype | model.geom_conaffinity).astype(bool)
@@ -184,7 +181,7 @@ class World:
         return float((data.geom_xpos[own, 2] + (axes * centre).sum(1) - (np.abs(axes) * half).sum(1)).min())
 
     def _sensor(self, name: str) -> int:
-        """Return the index of a sensor's first reading, -1 if the body has no such sensor."""
+        """Return the index of a sensor's first reading; -1 if `name` is empty."""
         return int(self.model.sensor(f"{self.prefix}/{name}").adr[0]) if name else -1
 
     def _felt(self, sensor: int) -> tuple[float, float, float]:
@@ -214,4 +211,4 @@ def _upright(left: NDArray[np.float64], right: NDArray[np.float64]) -> NDArray[n
 
 
 FALLEN_TILT = pi / 4
-"""The tilt of the torso from which the robot counts as fallen: more than in any motion [rad]."""
+"""The tilt of the torso above which the robot counts as fallen, more than in any motion [rad]."""

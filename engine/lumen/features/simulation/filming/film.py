@@ -1,4 +1,4 @@
-"""A film of a run in simulated time: shots chosen by events, and subtitles; drawn by a thread per core, at most 8."""
+"""A film of a run in simulated time, with event-driven shots and subtitles, drawn by one thread per core, at most 8."""
 
 import os
 from collections import deque
@@ -36,17 +36,17 @@ FilmSize = tuple[int, int]
 FILM_SIZE: FilmSize = (1920, 1080)
 
 TITLE_SHOWN, TITLE_FADES = 3.0, 0.6
-"""The time that the title is visible, and the time of its fading in or out [s]."""
+"""The duration of the title, and of its fading in or out [s]."""
 
 MAX_WAITING_FRAMES = 8
-"""The maximum number of frames that wait to be written; each needs as much memory as its pixels."""
+"""The maximum number of pictures that wait to be written; each needs as much memory as its pixels."""
 
 FOLLOWING = 0.06
-"""The share of the remaining distance that the camera moves towards its subject with each frame."""
+"""The share of the remaining distance that the camera moves towards its subject in each picture."""
 
 
 class Picture(NamedTuple):
-    """Everything that one frame is drawn from."""
+    """The data from which one picture is drawn."""
 
     state: RenderState
     camera: str | tuple[HallPoint, float, float, float]
@@ -62,9 +62,9 @@ class Picture(NamedTuple):
 class Film:
     """Writes an MP4 of a run: call `tick` whenever time has passed, and `close` at the end.
 
-    `camera` is the name of a camera of the hall; if it is empty, the film uses a camera of its own, whose shots the
-    calls of `happened` choose. `size` is (width, height) [px], both even. Raises RobotModelError if nothing can be
-    drawn, with the package to install, or if the hall has no such camera.
+    `camera` is the name of a camera of the hall. If it is empty, the film uses its own camera, whose shots the calls of
+    `happened` choose. `size` is (width, height) [px], both even. Raises RobotModelError if nothing can be drawn, if
+    ffmpeg can't be started or if the hall has no such camera.
     """
 
     def __init__(
@@ -109,7 +109,7 @@ class Film:
         self._director.happened(moment)
 
     def says(self, text: str) -> None:
-        """Show a text as the robot's subtitle until the next one; an empty text removes it."""
+        """Show a text as the robot's subtitle instead of the visitor's; an empty text removes the robot's subtitle."""
         self._said, self._said_from = text, None
         if text:
             self._heard = ""
@@ -121,7 +121,7 @@ class Film:
         self.happened(FilmMoment.VISITOR_SPEAKS)
 
     def tick(self, now: float) -> None:
-        """Draw the frames that are due by `now` [s]; this blocks the run if drawing can't keep up."""
+        """Draw one picture for all frames that are due by `now` [s]; block the run if drawing can't keep up."""
         if not self.frame_due(now):
             return
         world = self._robot.world
@@ -175,7 +175,7 @@ class Film:
         return pixels
 
     def _saying(self, now: float) -> str:
-        """Return the page of the robot's subtitle to show at `now` [s], estimated from the usual speed of speech."""
+        """Return the robot's subtitle page for `now` [s], estimated from the usual speed of speech; empty for none."""
         if not self._said:
             return ""
         if self._said_from is None:
@@ -217,7 +217,7 @@ def _up(point: HallPoint, by: float) -> HallPoint:
 
 
 def _fading(now: float) -> float:
-    """Return the opacity of the title at `now` [s], from 0 to 1."""
+    """Return the title's opacity at `now` [s], from 0 to 1."""
     return max(0.0, min(now / TITLE_FADES, (TITLE_SHOWN - now) / TITLE_FADES, 1.0))
 
 

@@ -1,4 +1,4 @@
-"""The options `--video` and `--size`: the file of a video and the size of its picture."""
+"""The options `--video` and `--size`, which set a video's file and picture size."""
 
 import argparse
 import os
@@ -17,9 +17,9 @@ from lumen.run.audio_track import AudioTrack
 
 
 def film_path(path: Path | None, robot: str) -> Path | None:
-    """Return the path, None if it is None.
+    """Return `path` after checking it; None if it is None.
 
-    Raises UsageError if that robot is not simulated, or no .mp4 can be written there.
+    Raises UsageError if `robot` is not `simulation`, or if no .mp4 can be written to `path`.
     """
     if path is None:
         return None
@@ -46,9 +46,9 @@ def configure_size(parser: argparse.ArgumentParser) -> None:
 
 
 def film_size(text: str) -> tuple[int, int]:
-    """Return (width, height) [px] of a text such as `1280x720`.
+    """Return (width, height) [px] from a text such as `1280x720`.
 
-    Raises UsageError for another form, odd numbers, or numbers out of range.
+    Raises UsageError if the text has another form, or a number is odd or out of range.
     """
     match = re.fullmatch(r"(\d{1,5})[x×](\d{1,5})", text)
     sides = (int(match[1]), int(match[2])) if match else (0, 0)
@@ -60,7 +60,7 @@ def film_size(text: str) -> tuple[int, int]:
 
 @dataclass(frozen=True, slots=True)
 class FilmPlan:
-    """The plan of a video of a simulated robot."""
+    """The settings for a video of a simulated robot."""
 
     path: Path
     track: AudioTrack | None = None
@@ -90,7 +90,10 @@ class FilmOptions:
     def wishes(
         self, options: argparse.Namespace, project: Project, story: Story | None, period: float | None
     ) -> Mapping[str, Any]:
-        """Return the film and its soundtrack for the run's plan; empty without `--video`."""
+        """Return the run's options for the film, its soundtrack and its path; empty without `--video`.
+
+        Raises UsageError if the path or the size is invalid.
+        """
         video, size = film_path(options.video, options.robot), film_size(options.size)
         if video is None:
             return {}
@@ -100,11 +103,11 @@ class FilmOptions:
 
 
 def film_progress(project: Project, story: Story | None, period: float | None) -> FilmProgress:
-    """Return the progress of a film whose length [s] is the shorter of the story's and `period`.
+    """Return the progress display of a film as long as the story or `period` [s], whichever is shorter.
 
-    The recording robot rehearses the story to find its length.
+    The recording robot rehearses the story to find its length. Without both, the length is unknown (0).
     """
-    from lumen.run.rehearsal import rehearse  # few runs are filmed
+    from lumen.run.rehearsal import rehearse  # imported late: few runs are filmed
 
     lengths = [length for length in (rehearse(project, story).time if story else None, period) if length]
     return FilmProgress(complain, min(lengths, default=0.0))

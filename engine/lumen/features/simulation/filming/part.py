@@ -23,7 +23,7 @@ from lumen.upkeep.own_folders import private_folder
 
 
 def add_sound(film: Path, track: AudioTrack, length: float) -> None:
-    """Add this soundtrack to an MP4 of that length [s], as AAC; the pictures stay the same.
+    """Add the soundtrack's first `length` [s] to an MP4, as AAC; the pictures stay the same.
 
     Raises RobotFailedError if ffmpeg fails.
     """
@@ -44,9 +44,9 @@ def add_sound(film: Path, track: AudioTrack, length: float) -> None:
 
 
 class FilmPart(Part, Observer):
-    """A part that films each tick and, when closed, adds the sound of `track`.
+    """A part that films the run and, when closed, adds the soundtrack `track`.
 
-    Events of the run choose the camera's shot. `size` is (width, height) [px], None for the default. Raises RobotError
+    The run's events choose the camera's shot. `size` is (width, height) [px]; None for the default. Raises RobotError
     if nothing can be drawn, UsageError if the robot is not simulated.
     """
 
@@ -77,7 +77,7 @@ class FilmPart(Part, Observer):
         self._now = 0.0
 
     def performing(self, command: Command, now: float) -> None:
-        """Show the subtitle of a spoken text; when a motion begins, request a shot of the whole robot."""
+        """Show a spoken text as a subtitle; request a full shot when a motion begins."""
         match command:
             case Start(id, Say(text)):
                 self._saying = id
@@ -92,7 +92,7 @@ class FilmPart(Part, Observer):
             self._film.says("")
 
     def visitor_action(self, action: VisitorAction) -> None:
-        """Show the visitor's words, and let arrivals and departures change the shot."""
+        """Show the visitor's words as a subtitle; request a shot for an arrival or a departure."""
         match action:
             case Arrive():
                 self._film.happened(self._moments.COMES)
@@ -117,7 +117,7 @@ class FilmPart(Part, Observer):
 
 
 def make(services: Services) -> FilmPart:
-    """Make the part that writes a video. Raises RobotError if nothing can be drawn."""
+    """Make the part that writes a video. Raises RobotError or UsageError as FilmPart does."""
     wanted: FilmPlan = services.plan.options["film"]
     story = services.plan.story
     title = story.title if story else services.project.name

@@ -1,14 +1,14 @@
-"""The progress of a film: drawing takes longer than the film lasts, so the time left is printed now and then."""
+"""The progress of a film: drawing takes longer than playback, so the remaining time is printed every 15 s."""
 
 import time
 from collections.abc import Callable
 
 FILM_TOLD_EVERY = 15.0
-"""The real time between two lines [s]."""
+"""The minimum real time between two lines [s]."""
 
 
 class FilmProgress:
-    """Reports to `tell` how much of a film of about `whole` [s] is drawn; `whole` is 0 if the length is unknown."""
+    """Calls `tell` with the progress of a film of about `whole` [s]; `whole` is 0 if the length is unknown."""
 
     def __init__(
         self, tell: Callable[[str], None], whole: float = 0.0, clock: Callable[[], float] = time.monotonic
@@ -17,7 +17,7 @@ class FilmProgress:
         self._began = self._told = clock()
 
     def tick(self, length: float) -> None:
-        """Print a line if one is due; the film has `length` [s] so far."""
+        """Report that `length` [s] are drawn, if a line is due."""
         now = self._clock()
         if now - self._told < FILM_TOLD_EVERY or length <= 0.0:
             return

@@ -1,7 +1,7 @@
-"""The shots of a film's camera: the robot with its visitor, its face, all of it, or the visitor's own view.
+"""The shots of a film's camera: the robot with its visitor, the robot's face, the whole robot, or the visitor's view.
 
-Events choose the shot, as an editor cuts a dialogue: mostly the speaker, sometimes the listener, and each shot long
-enough for the eye.
+Events choose the shot, as an editor cuts a dialogue: mostly the speaker, sometimes the listener, each long enough to
+be seen.
 """
 
 from enum import StrEnum
@@ -13,7 +13,7 @@ HallPoint = tuple[float, float, float]
 
 
 class Shot(StrEnum):
-    """The kinds of shot, by their names in film making."""
+    """The shots, by their names in film making."""
 
     TWO_SHOT = "two-shot"
     CLOSE_UP = "close-up"
@@ -32,7 +32,7 @@ class FilmMoment(StrEnum):
 
 
 class Subjects(NamedTuple):
-    """The subjects that can be filmed."""
+    """The positions of the robot and the visitor, for choosing the camera's place."""
 
     head: HallPoint
     """The position of the robot's head in the hall [m]."""
@@ -45,22 +45,21 @@ class Subjects(NamedTuple):
 
 
 class CameraPlace(NamedTuple):
-    """The camera's position and the point in the middle of its picture [m]."""
+    """The camera's position and the point at the centre of its picture [m]."""
 
     eye: HallPoint
     target: HallPoint
 
 
 SHORTEST_SHOT, LONGEST_SHOT = 2.5, 9.0
-"""The shortest time that a shot stays, and the time after which it changes without an event if a visitor is there [s].
-"""
+"""A shot's minimum duration, and the time after which it changes without an event if a visitor is present [s]."""
 
 FIELD_OF_VIEW = 36.0
 """The vertical angle of view [deg]: that of a long lens, without visible distortion."""
 
 HEAD_ROOM, CLOSE_DISTANCE, FULL_DISTANCE = 0.45, 0.62, 1.75
 SIDE = radians(-32.0)
-"""The angle between the robot's heading and a camera that films its face [rad], on the open side of the hall."""
+"""The angle from the robot's heading to a camera in front of the robot [rad], on the open side of the hall."""
 
 _WANTED = {
     FilmMoment.COMES: (Shot.TWO_SHOT,),
@@ -69,13 +68,13 @@ _WANTED = {
     FilmMoment.VISITOR_SPEAKS: (Shot.POINT_OF_VIEW, Shot.TWO_SHOT),
     FilmMoment.ROBOT_MOVES: (Shot.FULL_SHOT,),
 }
-"""The shots for each event, used in turn, so that a dialogue is not a single picture."""
+"""The shots for each event, used in turn to vary the pictures of a dialogue."""
 
 _NEEDS_VISITOR = frozenset((Shot.TWO_SHOT, Shot.POINT_OF_VIEW))
 
 
 class ShotDirector:
-    """Chooses the shots by events; the same events at the same times [s] give the same film."""
+    """Chooses shots by events; the same events at the same times [s] give the same film."""
 
     def __init__(self) -> None:
         self._shot, self._since = Shot.FULL_SHOT, 0.0
@@ -83,13 +82,13 @@ class ShotDirector:
         self._times = dict.fromkeys(FilmMoment, 0)
 
     def happened(self, moment: FilmMoment) -> None:
-        """Request the next shot for this event, in place of one requested before."""
+        """Request this event's next shot, in place of an earlier request."""
         wanted = _WANTED[moment]
         self._next = wanted[self._times[moment] % len(wanted)]
         self._times[moment] += 1
 
     def shot(self, now: float, visitor: bool) -> Shot:
-        """Return the shot to show at `now` [s], with or without a visitor."""
+        """Return the shot for `now` [s]; a shot that needs a visitor ends when `visitor` is False."""
         shown = now - self._since
         if self._shot in _NEEDS_VISITOR and not visitor:
             self._cut(Shot.FULL_SHOT, now)
@@ -121,7 +120,7 @@ def camera_place(shot: Shot, who: Subjects, aspect: float) -> CameraPlace:
 
 
 def _two_shot(who: Subjects, visitor: HallPoint, aspect: float) -> CameraPlace:
-    """Return the place of a camera to the side, far enough to show both from the robot's feet to the visitor's hair."""
+    """Return a camera place beside both subjects, far enough away to show the robot's feet and the visitor's hair."""
     dx, dy = visitor[0] - who.torso[0], visitor[1] - who.torso[1]
     apart = max(hypot(dx, dy), 0.3)
     low, high = who.torso[2] - 0.4, max(visitor[2] + 0.22, who.head[2] + 0.15)
@@ -134,7 +133,7 @@ def _two_shot(who: Subjects, visitor: HallPoint, aspect: float) -> CameraPlace:
 
 
 def _beside(who: Subjects, distance: float, height: float) -> HallPoint:
-    """Return a point at that distance and height [m] in front of the robot, on the side away from the visitor."""
+    """Return a point in front of the robot at this distance and height [m], on the side away from the visitor."""
     side = SIDE
     if who.visitor:
         towards = atan2(who.visitor[1] - who.torso[1], who.visitor[0] - who.torso[0]) - who.heading
