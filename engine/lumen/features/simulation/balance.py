@@ -100,8 +100,8 @@ class BalanceController:
     def _catch(self, standing: bool) -> None:
         """Keep the weight over the middle of the soles; swing arms and hips back if the robot falls backwards.
 
-        Arms and hips that turn backwards push the rest of the body forward, over the feet. NAO's heels end 45 mm behind its ankles; a push
-        of 2 N s from the front moves the DCM beyond them.
+        Arms and hips that turn backwards push the rest of the body forward, over the feet. NAO's heels end 45 mm behind
+        its ankles; a push of 2 N s from the front moves the DCM beyond them.
         """
         over = standing and self._falling.behind_heels > -self._heel_margin
         rate = self._lean_gain * (self._ahead - self._falling.ahead) if standing else -LEAN_RATE

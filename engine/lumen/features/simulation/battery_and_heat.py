@@ -1,4 +1,4 @@
-"""The robot's battery and the heat of its motors."""
+"""The robot's battery and its motors' heat."""
 
 from collections.abc import Sequence
 
@@ -12,12 +12,12 @@ BATTERY_CAPACITY = 48.6 * 3600
 """The energy of a full battery [J]: 48.6 Wh, from NAO V5's data sheet."""
 
 IDLE_POWER = 30.0
-"""The power of computer and sensors [W]: a charge lasts a good hour and a half of standing and talking."""
+"""The power of computer and sensors [W]: a charge lasts over an hour and a half of standing and talking."""
 
 CHARGING_POWER = 50.0
-"""The power into the battery while the charger is in [W]: an empty battery is full after an hour of rest.
+"""The charger's power beyond `IDLE_POWER` [W]: an empty battery is full after an hour of rest.
 
-Chosen, not measured. The charger also powers the robot; motors that need more than it gives draw the rest from the
+This value is chosen, not measured. Motors reduce the power that is left for charging; beyond it, they draw on the
 battery.
 """
 
@@ -25,20 +25,20 @@ STALL_POWER = 6.0
 """The power of a motor at its maximum torque without moving [W]."""
 
 BATTERY_LOW, BATTERY_RECOVERED, BATTERY_USED = 20, 25, 95
-"""The charges [%] at which the robot raises `battery.low`, may raise it again, and may raise `battery.full` again."""
+"""The charges [%] at which the robot raises `battery.low`, can raise it again, and can raise `battery.full` again."""
 
 MOTOR_HOT, MOTOR_COOLED = 75.0, 70.0
-"""The temperatures [degrees Celsius] at which the robot raises `motors.hot`, and may raise it again."""
+"""The temperatures [degrees Celsius] at which the robot raises `motors.hot`, and can raise it again."""
 
 MOTOR_AMBIENT, MOTOR_RISE, MOTOR_TIME_CONSTANT = 38.0, 300.0, 600.0
-"""The motors' initial temperature [degrees Celsius], their rise at the maximum torque, and the time constant [s].
+"""The motors' initial temperature and final rise at maximum torque [degrees Celsius], and the time constant [s].
 
-Chosen, not measured.
+These values are chosen, not measured.
 """
 
 
 class BatteryAndHeat:
-    """Integrates the energy that the robot uses, and the heat of its motors.
+    """Integrates the robot's energy use and its motors' heat.
 
     `efforts` are the joints' maximum torques [N m], and `charge` is the battery's initial charge, from 0 to 1.
     `temperatures` [degrees Celsius] are in the joints' order. `plugged` is true while the charger is in.
@@ -65,7 +65,7 @@ class BatteryAndHeat:
 
     @property
     def charging(self) -> bool:
-        """True if the charger is in and the battery not full."""
+        """True if the charger is in and the battery is not full."""
         return self.plugged and self._energy < BATTERY_CAPACITY
 
     @property
@@ -75,11 +75,11 @@ class BatteryAndHeat:
 
     @property
     def hot(self) -> bool:
-        """True if a motor was hot and has not cooled down since."""
+        """True if a motor became hot and has not cooled down since."""
         return bool(self._hot)
 
     def live(self, torques: NDArray[np.float64], speeds: NDArray[np.float64], dt: float, now: float) -> list[Event]:
-        """Advance by `dt` [s] with these torques [N m] and speeds [rad/s]; return events of battery and motors."""
+        """Advance by `dt` [s] with these torques [N m] and speeds [rad/s]; return battery and motor events."""
         load = np.square(torques / self._efforts)
         power = IDLE_POWER + STALL_POWER * float(load.sum()) + float(np.abs(torques * speeds).sum())
         given = IDLE_POWER + CHARGING_POWER if self.plugged else 0.0

@@ -69,7 +69,7 @@ class CatchStep:
         self._start = falling.soles[self._swings] - falling.soles[self._rests]
 
     def advance(self, now: float, measured: Mapping[str, float]) -> dict[str, float]:
-        """Return the goal angles of the legs' joints at `now` [s] as angles [rad]; `measured` has the present angles."""
+        """Return the legs' goal angles [rad] at `now` [s]; `measured` has the present angles [rad]."""
         gone = now - self._begin
         part = min(1.0, (gone + _LOOK_AHEAD) / self._seconds)
         falling, left = self._falling, max(self._seconds - gone, 0.0)
@@ -113,6 +113,6 @@ class CatchStep:
         joints[self._legs.names[side][role]] += self._legs.signs[side][role] * by
 
     def _level(self, place: CapturePoint) -> dict[str, float]:
-        """Return the swinging leg's angles [rad] that hold its sole level at `place` [m], relative to the other sole."""
+        """Return the swinging leg's angles [rad] that hold its sole level at `place` [m] relative to the other sole."""
         sole = self._falling.soles[self._rests] + place
         return hold_level(self._legs, self.side, self._falling.axes, sole, self._sent)

@@ -1,4 +1,4 @@
-"""`lumen play MOTION`: play a motion on the simulated robot, from the posture in which it begins."""
+"""`lumen play MOTION`: play a motion on the simulated robot, from the motion's starting posture."""
 
 import argparse
 import sys
@@ -66,9 +66,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Play the motion; return the exit code, 1 if the robot fell or missed a goal, else 0.
+    """Play the motion; return the exit code: 1 if the robot fell or missed a goal, else 0.
 
-    Raises UsageError if the robot can't play it, and ProjectError if a file that it needs has errors.
+    Raises UsageError if the robot can't play the motion, and ProjectError if a needed file has errors.
     """
     root = shown_project(options.project)
     use_model(options.model, [root])
@@ -89,7 +89,7 @@ def run(options: argparse.Namespace) -> int:
 def _played(
     project: Project, motion: MotionDefinition, speed: str, video: Path | None, size: tuple[int, int]
 ) -> dict[str, Any]:
-    """Play the motion and return the object of `--format json`. Raises UsageError if the robot can't play it."""
+    """Play the motion and return the object for `--format json`. Raises UsageError if the robot can't play it."""
     player = _Player(project, speed, video, size)
     print(f"{project.robot} plays `{motion.name}` ({motion.duration:.1f} s) at {speed} × real time")
     late = _slowed(motion, project.body)
@@ -121,7 +121,7 @@ def _played(
 
 
 class _Player:
-    """The simulated robot without a runtime: it performs one command after another, each to its end."""
+    """The simulated robot without a runtime, which performs each command to its end before the next."""
 
     def __init__(self, project: Project, speed: str, video: Path | None, size: tuple[int, int]) -> None:
         from lumen.features.simulation.filming.film import Film
@@ -133,7 +133,7 @@ class _Player:
         self._film = Film(video, self.robot, "close", size=size) if video else None
 
     def perform(self, command: RobotCommand, tell: ProgressListener, duration: float = 0.0) -> str:
-        """Perform a command, about `duration` [s] long, to its end; return the trouble in words, empty if it went well.
+        """Perform a command, about `duration` [s] long, to its end; return its trouble in words, empty for none.
 
         Trouble is a fall or a joint that missed its goal. `tell` receives the progress. Raises UsageError, with the
         reason, if the robot can't perform the command.
@@ -161,7 +161,7 @@ class _Player:
 
 
 def _slowed(motion: MotionDefinition, body: Body) -> list[str]:
-    """Return a line about each joint that can't keep up with the motion, at its worst key."""
+    """Return a line about each joint that can't keep up with the motion, for the joint's worst key."""
     worst = {excess.joint: excess for excess in sorted(overspeed(motion, body), key=lambda e: e.value / e.limit)}
     return [
         f"`{joint}` comes late: to get there by {excess.key.time:.2f} s it would have to move at {excess.value:.3g} "
@@ -171,7 +171,7 @@ def _slowed(motion: MotionDefinition, body: Body) -> list[str]:
 
 
 def _motion(found: ProjectDraft, name: str, options: argparse.Namespace) -> MotionDefinition:
-    """Return the motion of that name or in that file; errors in the project's other files are ignored.
+    """Return the motion with this name or in this file; errors in the project's other files are ignored.
 
     Raises UsageError if there is no such motion, ProjectError if its file has errors.
     """
@@ -197,7 +197,10 @@ def _motion(found: ProjectDraft, name: str, options: argparse.Namespace) -> Moti
 
 
 def _foreign(body: Body, path: Path, options: argparse.Namespace) -> MotionDefinition:
-    """Return the motion in another tool's file; print findings about parts that were not converted."""
+    """Return the motion in another tool's file; print findings about elements that were not converted.
+
+    Raises UsageError or ProjectError if the file has errors.
+    """
     try:
         data, diagnostics = read_gesture(
             str(path), foreign_content(path), body, timeline=options.timeline, retime=options.retime

@@ -1,9 +1,9 @@
-"""The NAO, or another biped, as an entity of dm_control's composer, for users' own worlds and tasks."""
+"""The NAO, or another biped, as a dm_control composer entity, for users' own worlds and tasks."""
 
 from collections.abc import Sequence
 from pathlib import Path
 
-import lumen.features.simulation.physics  # noqa: F401  # first: names what is not installed
+import lumen.features.simulation.physics  # noqa: F401  # first: reports missing packages
 
 # isort: split
 import numpy as np
@@ -22,7 +22,7 @@ from dm_control.composer.observation import observable
 
 
 def sole_sensors(body: Body) -> tuple[str, ...]:
-    """Return the names of the sites of the force sensors under the soles, the left sole's first."""
+    """Return the site names of the force sensors under the soles, the left sole's first."""
     force = body.roles.sensors.force
     return tuple(name for side in SIDES for name in force.get(side, ()))
 
@@ -30,9 +30,9 @@ def sole_sensors(body: Body) -> tuple[str, ...]:
 class NaoObservables(legacy_base.WalkerObservables):  # type: ignore[misc]
     """The observables of a NAO or another biped, in addition to those of any Walker.
 
-    `joints_pos` and `joints_vel` are in the body's order. Observables of missing sensors are left out. They have no
-    noise: `lumen.features.simulation.imperfections` has the errors of real encoders and gyrometers, to be used as the
-    `corruptor` of an observable.
+    `joints_pos` and `joints_vel` are in the body's order. Observables of missing sensors are left out. The observables
+    have no noise: `lumen.features.simulation.imperfections` has the error sizes of real encoders and gyrometers, for an
+    observable's `corruptor`.
     """
 
     def __init__(self, entity: composer.Entity) -> None:
@@ -58,17 +58,17 @@ class NaoObservables(legacy_base.WalkerObservables):  # type: ignore[misc]
 
     @composer.observable
     def camera_top(self) -> observable.Observable:
-        """The image of the camera that the robot sees with: uint8, Shape (height, width, 3)."""
+        """The eye camera's image: uint8, Shape (height, width, 3); Shape (0, 0, 3) if its size is unknown."""
         return self._camera(0)
 
     @composer.observable
     def camera_bottom(self) -> observable.Observable:
-        """The image of the model's second camera, Shape (height, width, 3); Shape (0, 0, 3) if it has none."""
+        """The second camera's image: uint8, Shape (height, width, 3); Shape (0, 0, 3) without a second camera."""
         return self._camera(1)
 
     @property
     def dynamic_sensors(self) -> list[observable.Observable]:
-        """The observables of forces: the sensors under the soles."""
+        """The force observables: the sensors under the soles, and those of attached entities."""
         own = [self.soles] if "soles" in self._observables else []
         return [*own, *self._collect_from_attachments("dynamic_sensors")]
 
@@ -77,7 +77,7 @@ class NaoObservables(legacy_base.WalkerObservables):  # type: ignore[misc]
         return [touch[name] for name in sole_sensors(self._entity.body) if name in touch]
 
     def _cameras(self) -> list[mjcf.Element]:
-        """Return the model's cameras, the one that the robot sees with first."""
+        """Return the model's cameras, the eye camera first."""
         eye = self._entity.body.roles.eyes.camera
         return sorted(self._entity.mjcf_model.find_all("camera"), key=lambda camera: camera.name != eye)
 
@@ -91,10 +91,10 @@ class NaoObservables(legacy_base.WalkerObservables):  # type: ignore[misc]
 class Nao(legacy_base.Walker):  # type: ignore[misc]  # dm_control has no types
     """The robot alone, a legged Walker: body, motors, sensors and cameras, without a controller or a hall.
 
-    `body` is `project.body` of a project, and `models` the folder of its MJCF; `name` distinguishes several robots.
+    `body` is a project's `project.body`, and `models` is the folder of its MJCF; `name` distinguishes several robots.
     Attach the robot with `nao.create_root_joints(arena.attach(nao))`, or attach its `mjcf_model` to plain MJCF. An
-    action is an angle for each of the `actuators` [rad], an opening for hands (0..1). A task that begins an episode
-    with `reinitialize_pose` begins in the posture Stand, or as `initializer` decides. Raises RobotError if the model is
+    action has an angle [rad], or a hand's opening (0..1), for each of the `actuators`. An episode that begins with
+    `reinitialize_pose` begins in the posture Stand, or as `initializer` sets. Raises RobotError if the model is
     unusable.
     """
 
@@ -109,7 +109,7 @@ class Nao(legacy_base.Walker):  # type: ignore[misc]  # dm_control has no types
         self.body, self._models, self._taken = body, Path(models), dict[str, base.WalkerPose]()
         self._mjcf_root = alone(body, Path(models))
         self._mjcf_root.model = name
-        # NAO has no velocimeter, but dm_control's tasks compute rewards from it.
+        # NAO has no velocimeter, but dm_control's tasks compute rewards from one.
         self._mjcf_root.sensor.add("velocimeter", name="velocimeter", site=self._where_it_feels())
         self._prev_action = np.zeros(self.action_spec.shape)
 
@@ -135,7 +135,7 @@ class Nao(legacy_base.Walker):  # type: ignore[misc]  # dm_control has no types
     def actuators(self) -> list[mjcf.Element]:
         """The motors in the body's order, controlled by angles [rad; hands 0..1].
 
-        A joint that shares a motor has none.
+        A joint moved by another joint's motor has none.
         """
         return self._named("actuator", [name for name in self.body.joints if name not in self.body.shared])
 
@@ -164,7 +164,7 @@ class Nao(legacy_base.Walker):  # type: ignore[misc]  # dm_control has no types
 
     @property
     def egocentric_camera(self) -> mjcf.Element:
-        """The camera that the robot sees with."""
+        """The eye camera."""
         return self._mjcf_root.find("camera", self.body.roles.eyes.camera)
 
     @property
@@ -173,9 +173,9 @@ class Nao(legacy_base.Walker):  # type: ignore[misc]  # dm_control has no types
         return self.pose("Stand")
 
     def take(self, physics: mjcf.Physics, posture: str) -> None:
-        """Put the robot into that posture, upright with its soles on the ground, and make the motors hold it.
+        """Put the robot into `posture`, upright with its soles on the ground, and make the motors hold this posture.
 
-        Use it to begin an episode.
+        Use this to begin an episode.
         """
         qpos, xpos, xquat = self.pose(posture)
         self.configure_joints(physics, qpos)
@@ -184,7 +184,7 @@ class Nao(legacy_base.Walker):  # type: ignore[misc]  # dm_control has no types
         physics.bind(self.actuators).ctrl = self.action_of(posture)
 
     def action_of(self, posture: str) -> np.ndarray:
-        """Return the action that holds that posture [rad; hands 0..1], in the order of `actuators`."""
+        """Return the action that holds `posture` [rad; hands 0..1], in the order of `actuators`."""
         angles = self.body.postures[posture]
         return np.array([angle for name, angle in angles.items() if name not in self.body.shared])
 
@@ -199,13 +199,13 @@ class Nao(legacy_base.Walker):  # type: ignore[misc]  # dm_control has no types
         return self._prev_action
 
     def aliveness(self, physics: mjcf.Physics) -> float:
-        """Return 0 for an upright torso, -1 for one upside down."""
+        """Return a value from -1, for an upside-down torso, to 0, for an upright torso."""
         return (float(physics.bind(self.root_body).xmat[-1]) - 1.0) / 2.0
 
     def pose(self, posture: str) -> base.WalkerPose:
-        """Return the angles of the model's joints in that posture, coupled ones included, and the torso's position.
+        """Return the model's joint angles in `posture`, including coupled joints, and the torso's position.
 
-        The position has the lowest sole at height 0.
+        The position puts the lowest sole at height 0.
         """
         if posture not in self._taken:
             root = alone(self.body, self._models)  # self may be attached to a world by now

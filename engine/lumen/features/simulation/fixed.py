@@ -34,5 +34,5 @@ class Fixed:
     def lose(self, posture: str) -> None:
         """Do nothing: the robot's position is certain."""
 
-        def keep(self, heading: float) -> None:
-            """Do nothing: the robot's position is certain."""
+    def keep(self, heading: float) -> None:
+        """Do nothing: the robot's position is certain."""

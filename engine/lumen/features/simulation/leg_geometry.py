@@ -1,8 +1,8 @@
-"""Dimensions of a body's legs, read from its MJCF: the axes' intersections in hips and ankles, and the links' lengths.
+"""A body's leg dimensions, read from its MJCF: the axes' intersections in hips and ankles, and the links' lengths.
 
-The legs' angles are computed in closed form (`LegGeometry.bend`). That needs a leg that yaws, rolls and pitches about
-one point of the hip, pitches in the knee, and pitches and rolls about one point of the ankle. Other legs are refused
-with the reason.
+The legs' angles are computed in closed form (`LegGeometry.bend`). That requires legs that yaw, roll and pitch about one
+point of the hip, pitch in the knee, and pitch and roll about one point of the ankle. Other legs are refused, with the
+reason.
 """
 
 from itertools import pairwise, product
@@ -21,12 +21,12 @@ MEETING_TOLERANCE = 1e-3
 """The tolerance [m] within which axes intersect, and legs are alike."""
 
 STRAIGHT_TOLERANCE = 0.02
-"""The deviation of an axis from its direction that is tolerated [rad]."""
+"""The tolerated deviation of an axis from its direction [rad]."""
 
 NANOMETRES = 9
-"""The number of decimals that are kept of lengths [m] and angles [rad].
+"""The number of decimals kept in lengths [m] and angles [rad].
 
-They are enough for the MJCF's numbers, and drop the rounding errors of their sums.
+These keep the MJCF's numbers, and drop the rounding errors of their sums.
 """
 
 TOUCHES = 0.003
@@ -39,7 +39,7 @@ class _Leg(NamedTuple):
     hip: LegVector
     """The point where the hip's axes meet [m]."""
     inclination: float
-    """The tilt of the hip yaw's axis from upright [rad]."""
+    """The tilt of the hip yaw axis from the vertical [rad]."""
     thigh: LegVector
     """The vector from hip to knee [m]."""
     tibia: LegVector
@@ -49,7 +49,7 @@ class _Leg(NamedTuple):
     sole_size: SoleSize
     """The distances of the sole's edges from the ankle [m]."""
     signs: tuple[float, ...]
-    """1 or -1 for each joint, -1 if it turns against its axis's usual direction."""
+    """For each joint, -1 if its axis points against the usual direction, else 1."""
 
 
 def read_legs(model: mujoco.MjModel, body: Body) -> LegGeometry:
@@ -155,7 +155,7 @@ class _LegReader:
         return joint.maximum + joint.minimum
 
     def _sole(self, side: Side, ankle: LegVector, joint: str) -> tuple[float, SoleSize]:
-        """Return the depth of the sole below the ankle [m] and the distances of its edges."""
+        """Return the sole's depth below the ankle, and the distances of its edges from the ankle [m]."""
         name = self._body.roles.soles.get(SIDE_ROLES[side], "")
         site = self._data.site(name)
         place, axes = self._place(site.xpos), self._axes.T @ site.xmat.reshape(3, 3)
@@ -184,13 +184,13 @@ class _LegReader:
         return [geom for geom in range(first, first + count) if solid[geom]]
 
     def _place(self, point: LegVector) -> LegVector:
-        """Return a point of the world in the torso's frame [m]."""
+        """Return a point of the world frame in the torso's frame [m]."""
         seen: LegVector = self._axes.T @ (point - self._origin)
         return seen
 
 
 def _outline(model: mujoco.MjModel, data: mujoco.MjData, geom: int) -> LegVector:
-    """Return the points of a geom's surface that may touch the ground: Shape (points, 3)."""
+    """Return the points of a geom's surface that can touch the ground [m]: Shape (points, 3)."""
     size, axes, place = model.geom_size[geom], data.geom_xmat[geom].reshape(3, 3), data.geom_xpos[geom]
     below = 0.0
     match mujoco.mjtGeom(model.geom_type[geom]):
@@ -227,7 +227,7 @@ def _compare(left: _Leg, right: _Leg) -> None:
 def _meet(pitch: LegVector, roll: LegVector, names: tuple[str, str]) -> LegVector:
     """Return the intersection of a lateral axis with an axis that points ahead.
 
-    Raises RobotModelError if the axes pass each other.
+    Raises RobotModelError if the axes do not intersect.
     """
     if (apart := abs(float(pitch[2] - roll[2]))) > MEETING_TOLERANCE:
         raise _apart(names[0], names[1], apart)

@@ -1,10 +1,10 @@
-"""Subtitles and a title for the pictures of a film, drawn with Pillow over the pixels."""
+"""Subtitles and a title for a film's pictures, drawn over the pixels with Pillow."""
 
 import unicodedata
 from functools import lru_cache
 from typing import NamedTuple
 
-import lumen.features.simulation.installed  # noqa: F401  # first: names what is not installed
+import lumen.features.simulation.installed  # noqa: F401  # first: reports missing packages
 
 # isort: split
 import numpy as np
@@ -12,13 +12,13 @@ from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
 FONTS = ("DejaVuSans.ttf", "NotoSans-Regular.ttf", "LiberationSans-Regular.ttf", "Arial.ttf", "arial.ttf")
-"""The fonts to look for in the system; without any, Pillow's own font is used, which has no accents."""
+"""The system fonts to try, in order; without any, Pillow's own font is used, which has no accents."""
 
 SUBTITLE_HEIGHT, TITLE_HEIGHT = 0.05, 0.1
 """The height of a line, as a share of the picture's height."""
 
 MAX_LINES = 2
-"""The maximum number of lines of a subtitle: more would hide the robot, and be read before they are spoken."""
+"""The maximum number of lines of a subtitle: more would hide the robot and reveal words before they are spoken."""
 
 SUBTITLE_WIDTH = 0.72
 """The maximum width of a line of subtitles, as a share of the picture's width."""
@@ -53,7 +53,7 @@ class Overlay(NamedTuple):
 def subtitle_pages(text: str, width: int, height: int) -> tuple[str, ...]:
     """Return the text as successive subtitles of at most MAX_LINES lines, split at the end of a clause if possible.
 
-    `width` and `height` are those of the picture [px].
+    `width` and `height` are the picture's size [px].
     """
     font, plain = _font(round(height * SUBTITLE_HEIGHT * 0.78))
 
@@ -74,7 +74,7 @@ def subtitle_pages(text: str, width: int, height: int) -> tuple[str, ...]:
 
 @lru_cache(maxsize=64)
 def subtitle(text: str, colour: Colour, width: int, height: int) -> Overlay:
-    """Return the text in lines at the bottom of a picture of that size [px]."""
+    """Return an overlay with the text in lines at the bottom of a picture of this size [px]."""
     font, plain = _font(round(height * SUBTITLE_HEIGHT * 0.78))
     lines = _wrapped(_written(text, plain), font, round(width * SUBTITLE_WIDTH))
     return _drawn(lines, font, colour, width, round(height * 0.94))
@@ -82,7 +82,7 @@ def subtitle(text: str, colour: Colour, width: int, height: int) -> Overlay:
 
 @lru_cache(maxsize=8)
 def title(text: str, width: int, height: int) -> Overlay:
-    """Return a title in the lower third of a picture of that size [px]."""
+    """Return an overlay with a title in the lower third of a picture of this size [px]."""
     font, plain = _font(round(height * TITLE_HEIGHT * 0.78))
     lines = _wrapped(_written(text, plain), font, round(width * 0.86))
     return _drawn(lines, font, ROBOT_COLOUR, width, round(height * 0.88))
@@ -103,7 +103,7 @@ def _drawn(lines: list[str], font: Font, colour: Colour, width: int, bottom: int
 
 
 def _wrapped(text: str, font: Font, most: int) -> list[str]:
-    """Return the words in lines of similar length, each at most `most` pixels wide."""
+    """Return the text in lines of similar length, at most `most` pixels wide unless a single word is wider."""
     words = text.split()
     text = " ".join(words)
     for count in range(1, 9):
@@ -129,7 +129,7 @@ def _filled(words: list[str], font: Font, most: float) -> list[str]:
 
 @lru_cache(maxsize=4)
 def _font(size: int) -> tuple[Font, bool]:
-    """Return a font of that height [px], and True if it has only ASCII letters."""
+    """Return a font of this height [px], and True if the font has only ASCII letters."""
     for name in FONTS:
         try:
             return ImageFont.truetype(name, size, layout_engine=ImageFont.Layout.BASIC), False

@@ -1,4 +1,4 @@
-"""The robot's lights and the things in its hand, shown by the colours of the model's materials."""
+"""The robot's lights and the objects in its hand, shown by the colours of the model's materials."""
 
 from collections.abc import Iterable, Iterator, Mapping
 
@@ -17,7 +17,7 @@ RENDERED_COLOURS: Mapping[object, int] = {
 """The colours of lit LEDs as seen through their covers; other names and values are drawn as CSS colours."""
 
 PROPS = ("microphone",)
-"""The things that the robot can hold for show: materials of the MJCF, invisible until then."""
+"""The objects that the robot can hold for show: materials of the MJCF, invisible until held."""
 
 _SPEAKING = (0.4, 0.9, 1.0)
 _WHITE = np.array([channel / 255 for channel in RENDERED_COLOURS["white"].to_bytes(3, "big")], np.float32)
@@ -25,9 +25,9 @@ _UNSEEN = 1e-5
 
 
 class Lights:
-    """Sets colours of the rendered model; the physics is not affected.
+    """Sets colours of the rendered model, without effect on the physics.
 
-    `groups` are the lights of this body: materials of its MJCF.
+    `groups` has the lights of each of this body's groups; lights are materials of its MJCF.
     """
 
     def __init__(self, model: mujoco.MjModel, groups: Mapping[str, Iterable[str]], prefix: str = ROBOT_PREFIX) -> None:
@@ -41,7 +41,7 @@ class Lights:
         self._worn: str | None = ""
 
     def show(self, colours: Mapping[str, object]) -> None:
-        """Set each of these groups of lights to a colour, a name or `#rrggbb`.
+        """Set the lights of each group to its colour, a name or `#rrggbb`.
 
         Unknown groups and colours change nothing.
         """
@@ -55,7 +55,7 @@ class Lights:
         return ((light, colour) for group, colour in groups.items() for light in self._groups.get(group, ()))
 
     def hold(self, props: Iterable[str]) -> None:
-        """Show exactly these things in the robot's hand."""
+        """Show these objects in the robot's hand, and hide all others."""
         for name in PROPS:
             if name in self._ids:
                 self._colours[self._ids[name], 3] = float(name in props)
@@ -66,7 +66,7 @@ class Lights:
             self._cover(light, _SPEAKING if speaking else None)
 
     def wear_eyes(self, colour: str) -> None:
-        """Draw this colour over the eyes, `off` for a blink; an empty text removes it.
+        """Draw this colour over the eyes, `off` for a blink; an empty text uncovers the eyes.
 
         A colour other than `off` shows only on eyes that have their first colour or are white: lights set by a command
         have priority.
@@ -81,7 +81,7 @@ class Lights:
                 self._cover(light, rendered(colour) if colour == "off" or not lit else None)
 
     def _cover(self, light: str, shown: tuple[float, float, float] | None) -> None:
-        """Draw a light in this colour over its own until it is uncovered with None."""
+        """Draw this colour over a light's own colour; None uncovers the light."""
         i = self._ids.get(light)
         if i is not None and shown is not None:
             self._unlit.setdefault(i, self._colours[i].copy())
@@ -102,12 +102,12 @@ class Lights:
         self._colours[:] = self._first
 
     def shown(self, light: str) -> NDArray[np.float32]:
-        """Return a light's own colour (red, green, blue from 0 to 1), Shape (3,), even while it is covered."""
+        """Return a light's own colour (red, green, blue from 0 to 1), Shape (3,), even if covered; black if unknown."""
         i = self._ids.get(light)
         return np.zeros(3, np.float32) if i is None else self._unlit.get(i, self._colours[i])[:3].copy()
 
     def draw(self, light: str, shown: ArrayLike) -> None:
-        """Set a light's own colour; if the light is covered, the colour appears once it is uncovered."""
+        """Set a light's own colour; on a covered light, the colour appears after uncovering."""
         i = self._ids.get(light)
         if i is not None:
             self._unlit.get(i, self._colours[i])[:3] = shown
@@ -120,7 +120,7 @@ def _alike(one: NDArray[np.float32], other: NDArray[np.float32]) -> bool:
 
 
 class LightFade:
-    """Changes lights evenly to their colours within `seconds` [s]; `cancel` sets them at once."""
+    """Fades lights evenly to their colours within `seconds` [s]; after `cancel`, the next `advance` sets them."""
 
     def __init__(self, lights: Lights, colours: Mapping[str, object], seconds: float, now: float) -> None:
         self._lights, self._seconds, self._begin = lights, seconds, now
@@ -140,6 +140,6 @@ class LightFade:
 
 
 def rendered(colour: object) -> tuple[float, float, float] | None:
-    """Return a light's colour as drawn (red, green, blue from 0 to 1); None if `colour` is not one."""
+    """Return a light's colour as drawn (red, green, blue from 0 to 1); None if `colour` is not a colour."""
     shown = RENDERED_COLOURS.get(colour, rgb(colour))
     return None if shown is None else ((shown >> 16) / 255, (shown >> 8 & 255) / 255, (shown & 255) / 255)

@@ -1,4 +1,4 @@
-"""The places and shapes of a robot's links for given joint angles: computed, not simulated."""
+"""The poses and shapes of a robot's links for given joint angles, computed without simulation."""
 
 from collections.abc import Iterator, Mapping
 from math import cos, sin
@@ -15,7 +15,7 @@ from lumen.robot.links import FLOOR, LinkFrame, LinkShape
 
 LinkNumbers = NDArray[np.float64]
 SEEN_GROUP = 2
-"""The group of visible geoms."""
+"""The geom group of the visible geoms."""
 
 
 class LinkFrames:
@@ -31,7 +31,7 @@ class LinkFrames:
     def frames(self, joints: Joints) -> Iterator[LinkFrame]:
         """Yield each link with its pose in its parent's frame.
 
-        The first one is in the hall's frame, with the robot's lowest point on the floor.
+        The first link's pose is in the hall's frame, with the robot's lowest point on the floor.
         """
         model, data = self._model, self._data
         for name, angle in zip(joints.names, joints.angles, strict=True):
@@ -71,7 +71,7 @@ class LinkFrames:
             yield LinkShape(link, kind, *pose, model.geom_size[number], colour, vertices, faces)
 
     def _follow(self) -> None:
-        """Set the joints that follow another joint: fingers, and the second hip yaw."""
+        """Set the joints that follow another joint, such as fingers and the second hip yaw."""
         model, data = self._model, self._data
         for number in np.flatnonzero(model.eq_type == mujoco.mjtEq.mjEQ_JOINT):
             one, other = model.eq_obj1id[number], model.eq_obj2id[number]
@@ -88,7 +88,7 @@ class LinkFrames:
 
 
 def _rotation(inertial: Mapping[str, float], theta: float) -> LinkNumbers:
-    """Return the torso's rotation: turned by `theta` [rad], then tilted by the inertial unit's angles."""
+    """Return the torso's rotation as a quaternion: `theta` [rad], then the tilt by the inertial unit's angles."""
     turned = np.array([1.0, 0.0, 0.0, 0.0])
     for angle, axis in ((theta, 3), (inertial.get("AngleY", 0.0), 2), (inertial.get("AngleX", 0.0), 1)):
         other = np.zeros(4)

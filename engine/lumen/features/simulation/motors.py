@@ -1,4 +1,4 @@
-"""The motors, through which every joint is moved."""
+"""The motors that move the joints."""
 
 from collections import deque
 from collections.abc import Collection, Iterable, Mapping
@@ -15,14 +15,14 @@ from lumen.features.simulation.world import World
 from lumen.project.units import unit_in_si
 
 _WITHOUT_BOUND = 1e9
-"""The stall torque [N m] of motors without one; infinity would give NaN at a speed of 0."""
+"""The stall torque [N m] of motors whose stall torque is unknown; infinity would give NaN at a speed of 0."""
 
 
 class MotorTorques:
-    """The maximum torque of each motor as a function of its speed: a line from its stall torque to its no-load speed.
+    """Each motor's maximum torque as a function of its speed: a line from its stall torque to its no-load speed.
 
-    A motor whose actuator has no stall torque keeps its torque at every speed; without `falling`, all do. `fastest` are
-    the no-load speeds [rad/s] at the battery's nominal voltage, Shape (motors,).
+    A motor whose actuator has no stall torque keeps its torque at every speed. So do all motors if `falling` is False.
+    `fastest` has the no-load speeds [rad/s] at the battery's nominal voltage, Shape (motors,).
     """
 
     def __init__(self, world: World, fastest: NDArray[np.float64], *, falling: bool = True) -> None:
@@ -32,10 +32,10 @@ class MotorTorques:
         self._stall = np.where(stall > 0.0, stall, _WITHOUT_BOUND)
 
     def limit(self, allowed: NDArray[np.float64], volts: float) -> NDArray[np.float64]:
-        """Return the minimum and maximum torque of each motor [N m], Shape (motors, 2).
+        """Return each motor's minimum and maximum torque [N m], Shape (motors, 2).
 
-        These are the values `allowed`, of the same shape, reduced to the torque that `volts` [V] give at the present
-        speed.
+        These are the values `allowed`, Shape (motors, 2), reduced to the torque available from `volts` [V] at the
+        present speed.
         """
         supply, limits = volts / NOMINAL_VOLTAGE, np.empty((len(self._stall), 2))
         turning = self._world.motor_speeds / self._fastest
@@ -52,8 +52,8 @@ class Motors:
     """Drives every joint to its goal within the body's limits and speeds.
 
     `goal` has the joints' goals and `command` the angles sent to their servos, both of Shape (joints,) [rad; hands
-    0..1]. `effort` is the maximum torque of each motor [N m], 0 for a joint that is moved by another joint's motor;
-    `voltage` is the supply [V].
+    0..1]. `effort` has each joint's maximum motor torque [N m], 0 for a joint that another joint's motor moves. `voltage` is
+    the supply voltage [V].
     """
 
     def __init__(self, world: World, lacking: Imperfections | None = None) -> None:
@@ -82,7 +82,7 @@ class Motors:
     def aim(self, targets: Mapping[str, float]) -> None:
         """Set the goals of these joints, limited to their ranges.
 
-        A joint that shares a motor moves its twin too; if both are named, the one with the motor decides. Raises
+        Joints that share a motor get the same goal; if both are named, the joint with the motor has priority. Raises
         RobotError, and changes nothing, for an unknown joint or an angle that is not finite.
         """
         self.check(targets)
@@ -102,7 +102,7 @@ class Motors:
                 raise BadCommandError(f"`{name}` cannot move to {angle}")
 
     def inside(self, name: str, angle: float) -> float:
-        """Return the nearest angle [rad; hands 0..1] inside that joint's limits."""
+        """Return the nearest angle [rad; hands 0..1] within the joint's limits."""
         low, high = self._limits[name]
         return min(max(angle, low), high)
 
@@ -111,7 +111,7 @@ class Motors:
         return {name: float(self.goal[self.index[name]]) for name in names}
 
     def unit(self, name: str) -> str:
-        """Return `rad ` for a joint that turns, `m ` for one that slides; empty for a hand."""
+        """Return `rad ` for a joint that turns, `m ` for a joint that slides; empty for a hand."""
         unit = unit_in_si(name, self._world.body)
         return f"{unit} " if unit else ""
 
@@ -137,9 +137,9 @@ class Motors:
         self._held = {self.index[name]: angle for name, angle in angles.items()}
 
     def stiffen(self, stiffness: float, names: Collection[str] | None = None) -> None:
-        """Limit these motors, or all, to a share of their torque, from 0 to 1.
+        """Limit these motors, or all if `names` is None, to a share of their torque, from 0 to 1.
 
-        Joints that were limp get their present angles as goals, so that they do not jump.
+        Joints that were limp get their present angles as goals, which prevents jumps.
         """
         chosen = [self.index[name] for name in names] if names is not None else list(self.index.values())
         limp = [i for i in chosen if self.stiffness[i] < LIMP_STIFFNESS]
@@ -154,7 +154,7 @@ class Motors:
         self._limits_of_torque()
 
     def drive(self, trim: JointVector, dt: float) -> None:
-        """Send the servos their angles for `dt` [s] from now.
+        """Send the servos their angles for the next `dt` [s].
 
         `trim` [rad] is added to the goals in this period only.
         """
@@ -170,6 +170,6 @@ class Motors:
         self._limits_of_torque()
 
     def _limits_of_torque(self) -> None:
-        """Limit each motor's torque by its stiffness and its present speed."""
+        """Limit each motor's torque by its stiffness, its present speed and the supply voltage."""
         volts = self.voltage if self._supplied else NOMINAL_VOLTAGE
         self._world.model.actuator_forcerange[self._world.actuators] = self._torques.limit(self._allowed, volts)

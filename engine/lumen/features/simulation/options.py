@@ -15,7 +15,7 @@ def configure_imperfections(parser: argparse.ArgumentParser) -> None:
 
 
 def imperfections_of(text: str | None) -> Imperfections | None:
-    """Return the imperfections in a list such as `noise,latency`, or in `none`; None if the option is None.
+    """Return the imperfections listed in `text`, such as `noise,latency` or `none`; None if `text` is None.
 
     Raises UsageError for an unknown name.
     """

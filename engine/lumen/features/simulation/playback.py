@@ -15,17 +15,17 @@ from lumen.robot.joint_ways import APPROACH_TIME, RECOVERY_TIME, away, begun_fro
 _START_POSTURE_TOLERANCE = 0.05
 
 LATE, BLOCKED, BLOCKED_ON_THE_WAY = 0.05, 0.2, 0.4
-"""The tolerated distances of joints [rad; hands 0..1].
+"""The tolerated errors of joints [rad; hands 0..1].
 
-The first is that of the angle sent to a joint from its key, the others those of the joint from the angle sent: at the
-end of a motion, and at earlier keys.
+The first is between a key and the angle sent to the joint. The others are between the angle sent and the joint's
+angle: at the motion's end, and at earlier keys.
 """
 
 
 class MotionPlayback:
-    """A motion: first to its starting posture if the robot is elsewhere, then along its keys, with its cues.
+    """Plays a motion: first to its starting posture if necessary, then along its keys, with its cues.
 
-    `home` are the starting posture's angles [rad] of the joints that the motion owns. `notice` receives the events of
+    `home` has the starting posture's angles [rad] for the joints that the motion owns. `notice` receives the events of
     cues for words, sounds and skills. A joint that misses its keys does not end the motion; see `missed`.
     """
 
@@ -52,14 +52,14 @@ class MotionPlayback:
 
     @property
     def missed(self) -> str:
-        """The joints that missed their keys, with the largest distance and its time; empty if none did."""
+        """A message about the joints that missed their keys, with the largest errors and their times; empty for none."""
         far = sorted(self._missed.items(), key=lambda item: -item[1][0])
         parts = (f"`{joint}` was {by:.2g} {self._motors.unit(joint)}off at {at:.2f} s" for joint, (by, at) in far)
         return f"in `{self._motion.name}` a joint missed its goal: {', '.join(parts)}" if far else ""
 
     @property
     def reached(self) -> float:
-        """The time in the motion [s]; 0 on the way to its beginning."""
+        """The time in the motion [s]; 0 on the way to the motion's beginning."""
         return self._now - self._begin if self._trajectory else 0.0
 
     def advance(self, now: float) -> bool:
@@ -79,7 +79,7 @@ class MotionPlayback:
         return self._play(self._trajectory, now - self._begin)
 
     def cancel(self) -> None:
-        """Begin to return to the starting posture, within `RECOVERY_TIME`."""
+        """Restore the motion's lights, empty the hand, and begin to return to the starting posture in `RECOVERY_TIME`."""
         for cue in self._motion.cues:
             if cue.kind == "leds" and isinstance(cue.value, Mapping):
                 self._lights.restore(cue.value)
@@ -109,7 +109,7 @@ class MotionPlayback:
         return True
 
     def _note_keys(self, t: float) -> None:
-        """Record joints that are not at a key whose time has come: they are too slow, or blocked."""
+        """Record the joints that miss a key due by `t` [s], because they are too slow or blocked."""
         while self._keys and self._keys[0][0] <= t:
             _, joint = self._keys.pop(0)
             self._note(joint, self._motors.lag(joint), LATE, t)
@@ -127,7 +127,7 @@ class MotionPlayback:
 
 
 class SpeechActivity:
-    """Speaks a text for `duration` [s] while the robot's ears glow; `words` are the times of its words, if known."""
+    """Speaks a text for `duration` [s] while the robot's ears glow; `words` has the words' times, if known."""
 
     def __init__(self, lights: Lights, voice: SpeechPlayback, said: Say, volume: float, now: float) -> None:
         self._lights, self._voice, self._now = lights, voice, now
@@ -137,7 +137,7 @@ class SpeechActivity:
         lights.speak(True)
 
     def advance(self, now: float) -> bool:
-        """Return True, and turn the ears off, once the text has been spoken."""
+        """Return True, and restore the ears, if the text has been spoken by `now` [s]."""
         self._now = now
         if now < self._until:
             return False

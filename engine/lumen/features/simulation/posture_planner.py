@@ -1,4 +1,4 @@
-"""Changes of posture along paths on which the robot does not fall, down to the floor and up again."""
+"""Posture changes along paths on which the robot does not fall, down to the floor and up again."""
 
 from collections.abc import Callable, Collection
 from dataclasses import dataclass
@@ -14,17 +14,17 @@ from lumen.motion.postures import lies, passage, route
 from lumen.motion.trajectories import Trajectory
 
 MAX_ATTEMPTS = 3
-"""The maximum number of attempts of a robot that ends on the floor."""
+"""The maximum number of attempts if the robot ends on the floor."""
 
 LYING_TILT = pi / 3
-"""The tilt of the torso beyond which the robot is lying [rad]; that of a relaxed, sitting robot is half as large."""
+"""The torso's tilt beyond which the robot is lying [rad]; a relaxed, sitting robot tilts half as much."""
 
 SETTLING_TIME, REST_TIME = 1.5, 0.4
-"""The time to move the joints to the posture in which a robot lies or sits, and the rest after a passage [s]."""
+"""The time to bring a lying or sitting robot's joints to its posture, and the rest after a passage [s]."""
 
 
 class UprightSensor(Protocol):
-    """The direction of up in the torso's axes (forward, left, up), measured by the accelerometer."""
+    """A sensor of the upward direction `up` in the torso's axes (forward, left, up)."""
 
     @property
     def up(self) -> tuple[float, float, float]: ...
@@ -41,16 +41,16 @@ class PostureState:
     passage: MotionDefinition | None = None
     """The passage that was interrupted; None if the robot is in a posture."""
     reached: float = 0.0
-    """The time in that passage [s]."""
+    """The time reached in the interrupted passage [s]."""
 
     @property
     def upright(self) -> bool:
-        """True if the robot stands, on both feet if it has them."""
+        """True if the robot is in a standing posture, and not in an interrupted passage."""
         return self.posture in self.standing and self.passage is None
 
 
 def lying(feeling: UprightSensor) -> str:
-    """Return the posture on the floor nearest to the robot's; empty if its torso does not lie."""
+    """Return `LyingBack` or `LyingBelly` if the robot's torso is lying, else an empty text."""
     forward, _, up = feeling.up
     if up > cos(LYING_TILT):
         return ""
@@ -58,12 +58,12 @@ def lying(feeling: UprightSensor) -> str:
 
 
 class PosturePlanner:
-    """The way to the nearest of the postures `goals`, passage by passage, with a check of the result after each.
+    """A way to the nearest of the postures `goals`, passage by passage, with a check of each result.
 
-    If a passage fails, the robot lies on the floor and begins again from there, in at most `MAX_ATTEMPTS` attempts. A
-    cancelled way halts, and the next one continues from there. `speed` is a share of the maximum, `settle` first brings
-    the joints to the present posture, for a robot whose joints may be anywhere, and `after` is called at the end.
-    Raises RobotError if no way leads to a goal.
+    A robot that ends on the floor begins again from there, with at most `MAX_ATTEMPTS` attempts. A cancelled way halts,
+    and the next way continues from there. `speed` is a share of the maximum. `settle` first brings the joints to the
+    present posture, for a robot whose joints can be at any angles. `after` is called at the end. Raises RobotError if no
+    way leads to a goal.
     """
 
     def __init__(
@@ -107,7 +107,7 @@ class PosturePlanner:
         return self._step is None
 
     def cancel(self) -> None:
-        """Halt, and record the time in a passage, from which the next way continues."""
+        """Halt; in a passage, record the time reached, from which the next way continues."""
         if isinstance(self._step, _Passing):
             self._posture_state.passage, self._posture_state.reached = self._step.motion, self._step.reached
             self._step = None
@@ -118,7 +118,7 @@ class PosturePlanner:
     def _arrived(self) -> bool:
         """Record the posture reached; return True if it is the intended one.
 
-        Raises RobotFailedError after the last attempt, and for a robot that neither reached the posture nor lies.
+        Raises RobotFailedError after the last attempt, or if the robot neither reached the posture nor is lying.
         """
         step, state = self._step, self._posture_state
         state.posture, state.passage = step.end if step else state.posture, None

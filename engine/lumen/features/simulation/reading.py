@@ -8,5 +8,5 @@ from lumen.project.document_report import DocumentReport
 
 
 def read_imperfections(data: Mapping[str, Any], report: DocumentReport) -> Imperfections:
-    """Return the imperfections of the simulated robot; those that lumen.yaml does not name are on."""
+    """Return the simulated robot's imperfections; imperfections that lumen.yaml does not name are on."""
     return Imperfections(**data["imperfections"])

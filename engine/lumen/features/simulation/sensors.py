@@ -130,10 +130,10 @@ class BodySensors:
 
     @property
     def inertial(self) -> dict[str, float]:
-        """The inertial unit's angles [rad], rates [rad/s] and accelerations [m/s^2] by NAOqi's names, in the torso's axes.
+        """The inertial unit's angles [rad], rates [rad/s] and accelerations [m/s^2] by NAOqi's names.
 
-        X is forward, Y left, Z up. AngleX is roll, AngleY pitch, AngleZ the angle turned left since the start. At rest,
-        the accelerometer measures the floor's upward force: Z is 9.81.
+        In the torso's axes, X is forward, Y left, Z up. AngleX is roll, AngleY pitch, AngleZ the angle turned left since
+        the start. At rest, the accelerometer measures the floor's upward force: Z is 9.81.
         """
         forward, left, up = self._world.up
         turning, pushed = (self.gyro[0], self.gyro[1], self.turning), self._world.acceleration
@@ -154,7 +154,7 @@ class BodySensors:
         self._turn(roll, pitch, yaw)
 
     def _turn(self, roll: float, pitch: float, yaw: float) -> None:
-        """Turn the estimated attitude by the gyrometer's rates, level it by the direction of up, and update the heading."""
+        """Turn the estimated attitude by the gyrometer's rates, level it by gravity, and update the heading."""
         axes, (x, y, z) = self._axes, self._world.up
         _, _, _, _, _, _, u, v, w = axes.tolist()
         self._turns[:] = (

@@ -1,4 +1,4 @@
-"""The abilities of a simulated robot: the body parts of each command, and how it begins."""
+"""A simulated robot's abilities: the body parts that each command owns, and the activity that performs it."""
 
 from collections.abc import Callable
 from math import inf, pi
@@ -34,7 +34,7 @@ FALLEN_STIFFNESS = 0.1
 """The stiffness of a fallen robot."""
 
 PROTECTING_STIFFNESS, PROTECTING_TIME = 0.6, 0.7
-"""The stiffness of head and arms during a fall, and its duration [s]."""
+"""The stiffness of head and arms during a fall, and the assumed duration of the fall [s]."""
 
 BREAKS_A_FALL = {
     "head.pitch": -0.6,
@@ -43,13 +43,13 @@ BREAKS_A_FALL = {
     "arms.left.elbow-roll": -0.9,
     "arms.right.elbow-roll": 0.9,
 }
-"""The angles of head and arms in a forward or sideways fall [rad]. Nothing that was tried helped in a backward fall."""
+"""The angles of head and arms in a forward or sideways fall [rad]. In trials, no angles helped in a backward fall."""
 
 FIRST_POSTURE = "Stand"
 """The posture that every body has."""
 
 BACKWARDS = 0.3
-"""The forward component of the direction of up, in the torso's axes, beyond which the robot falls on its back."""
+"""The forward component of the upward direction, in the torso's axes, from which the robot falls on its back."""
 
 FULL_VOLUME = 1.0
 """The volume of speech before any `volume` command."""
@@ -59,9 +59,9 @@ _UPRIGHT = pi / 9
 
 
 class SimulatedSkills:
-    """Begins activities, and keeps the robot's condition: motors on, posture, fallen.
+    """Begins activities, and records whether the robot is awake or fallen, and its posture.
 
-    `notice` receives events for the words and sounds of a motion; `playing` is the motion begun last.
+    `notice` receives a motion's cue events; `playing` is the motion begun last, None before the first.
     """
 
     def __init__(
@@ -92,7 +92,7 @@ class SimulatedSkills:
 
     @property
     def upright(self) -> bool:
-        """True if the robot is on both feet and is not leaving them."""
+        """True if the robot is in a standing posture and on no passage between postures."""
         return self._posture_state.upright and not (self._way and self._way.passing)
 
     @property
@@ -109,7 +109,7 @@ class SimulatedSkills:
         return self._part.get(joint, "")
 
     def begin(self, command: NativeCommand, now: float) -> Activity:
-        """Begin a command and return its activity. Raises RobotError if the robot can't."""
+        """Begin a command and return its activity. Raises RobotError if the robot can't begin it."""
         if row_of(command).moves and not isinstance(command, Wake | Posture):
             self._ready()
         match command:
@@ -144,12 +144,10 @@ class SimulatedSkills:
                 assert_never(command)
 
     def fall(self, now: float) -> None:
-        """Go limp.
+        """Make the robot limp.
 
-        Unless the robot falls on its back, the head is raised and the arms are put in the way, until `lie` releases
-        them.
-
-        Legs would be too slow to help.
+        Unless it falls on its back, head and arms first protect the robot, until `lie` releases them. Legs would be too
+        slow to help.
         """
         self.fallen, self._way, self._down_at = True, None, now + PROTECTING_TIME
         self._motors.stiffen(FALLEN_STIFFNESS)
@@ -159,7 +157,7 @@ class SimulatedSkills:
         self._lights.reset()
 
     def lie(self, now: float) -> None:
-        """Release head and arms too, once the fall is over."""
+        """Release head and arms when the fall is over."""
         if self.fallen and now >= self._down_at:
             self._motors.stiffen(FALLEN_STIFFNESS)
             self._down_at = inf
@@ -189,9 +187,9 @@ class SimulatedSkills:
     def _go(
         self, goals: tuple[str, ...], now: float, speed: float, after: Callable[[], None] | None = None
     ) -> PosturePlanner:
-        """Return the way to the nearest of these postures; a fallen or limp robot begins as it lies or sits.
+        """Return the activity that leads to the nearest of these postures; a limp robot begins as it lies or sits.
 
-        Raises RobotRefusedError for a fallen robot that neither lies nor is upright.
+        Raises RobotRefusedError if a fallen robot is neither lying nor upright, or if no way leads to a goal.
         """
         limp, down = self.fallen or not self.awake, lying(self._sensors)
         if limp and down:

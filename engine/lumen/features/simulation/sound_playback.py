@@ -12,19 +12,19 @@ class SpeechPlayback(Protocol):
     """Speaks texts in simulated time."""
 
     words: tuple[WordTime, ...]
-    """The times at which the words of the last text begin, if the voice reports them."""
+    """The times at which the last text's words begin; empty if the voice does not report them."""
 
     def begin(self, text: str, language: str, volume: float, now: float) -> float:
         """Begin to speak at `now` [s] with a `volume` from 0 to 1; return the duration [s]."""
         ...
 
     def end(self, now: float) -> None:
-        """End the speech: it is finished or was cancelled."""
+        """End the finished or cancelled speech at `now` [s]."""
         ...
 
 
 class SilentPlayback:
-    """Speaks without sound, as long as the text would take."""
+    """A silent voice: each text takes its usual duration."""
 
     words: tuple[WordTime, ...] = ()
 
@@ -42,13 +42,13 @@ class SoundPlayback(Protocol):
     def play(self, sound: PlaySound, volume: float, now: float) -> Callable[[float], None]:
         """Begin to play at `now` [s] with a `volume` from 0 to 1.
 
-        Return a function; the caller passes it the time [s] at which the sound ends or is stopped.
+        Return a function that the caller calls with the time [s] at which the sound ends or is stopped.
         """
         ...
 
 
 class SilentSounds:
-    """Plays nothing; the robot still waits for the sound's length."""
+    """Plays nothing; the robot still waits for the sound's duration."""
 
     def play(self, sound: PlaySound, volume: float, now: float) -> Callable[[float], None]:
         """Return a function that does nothing."""
@@ -56,14 +56,14 @@ class SilentSounds:
 
 
 class SoundActivity:
-    """A sound that is playing, for as long as the file lasts."""
+    """The activity of playing a sound for the file's duration."""
 
     def __init__(self, playback: SoundPlayback, sound: PlaySound, volume: float, now: float) -> None:
         self._end, self._now = playback.play(sound, volume, now), now
         self._until = now + sound.length
 
     def advance(self, now: float) -> bool:
-        """Return True, and stop the player, once the sound has ended."""
+        """Return True, and stop the player, if the sound has ended by `now` [s]."""
         self._now = now
         if now < self._until:
             return False

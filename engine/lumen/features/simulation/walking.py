@@ -30,10 +30,10 @@ from lumen.motion.gait.legs import SIDE_ROLES, sign
 from lumen.motion.gait.parameters import scale_of
 
 MAX_WALK_DISTANCE = 10.0
-"""The longest walk that is accepted [m]."""
+"""The longest accepted walk [m]."""
 
 MAX_STAGE_DRIFT = 0.02
-"""The most that a later step may be planned beyond the stage [m]: each foot lands a little off its plan."""
+"""The maximum distance of later planned steps beyond the stage [m]: each foot lands slightly off its plan."""
 
 ARRIVAL_TOLERANCE, HEADING_TOLERANCE = 0.02, 0.05
 """The distance [m] and the angle [rad] from its goal beyond which a finished walk has failed."""
@@ -45,17 +45,16 @@ HAZARD_CHECK_PERIOD = 0.1
 """The time between two checks for hazards [s]."""
 
 ARM_SWING_GAIN, MAX_ARM_SWING, HANGING_ARM_PITCH = 2.5, 0.35, 1.0
-"""The swing of arms for each metre between the feet [rad/m], its maximum [rad], and the pitch above which arms hang
-[rad].
+"""The arms' swing per metre between the feet [rad/m], its maximum [rad], and the pitch of hanging arms [rad].
 
-The first value is for legs as long as those that the paces were tuned with.
+The first value is for the leg length with which the paces were tuned. Arms hang above the pitch.
 """
 
 
 def way_of(command: Walk | Move) -> Pose | Velocity:
     """Return a walk's goal relative to the robot, or its velocity.
 
-    Raises RobotError if it is not finite, or too far.
+    Raises RobotError if a value is not finite, or if the goal is too far.
     """
     if isinstance(command, Move):
         velocity = Velocity(command.vx, command.vy, command.vtheta)
@@ -71,9 +70,9 @@ def way_of(command: Walk | Move) -> Pose | Velocity:
 
 
 class WalkController:
-    """Controls walks; `begin` makes the activity of a command.
+    """Controls walks; `begin` returns a command's activity.
 
-    `free` returns True if no command moves a joint, `hot` if the motors should be spared.
+    `free` returns True if no command moves a joint and the motors are on, `hot` if the motors should be spared.
     """
 
     def __init__(
@@ -105,9 +104,8 @@ class WalkController:
     def begin(self, command: Walk | Move, now: float) -> "WalkActivity":
         """Begin a walk and return its activity.
 
-        If a walk at a velocity is in progress, a new velocity changes that walk.
-
-        Raises RobotError, and changes nothing, if the walk must not begin.
+        If a walk at a velocity is in progress, a new velocity changes that walk. Raises RobotError, and moves nothing, if
+        the walk must not begin.
         """
         way = way_of(command)
         if isinstance(way, Velocity) and self._walking and self._walking.steer(way, now):
@@ -138,12 +136,12 @@ class WalkController:
         return brisk if isinstance(way, Velocity) and (now == brisk or way.within(usual) != way) else usual
 
     def measured(self) -> dict[str, float]:
-        """Return the angles of the legs' joints measured by the encoders [rad]."""
+        """Return the legs' joint angles measured by the encoders [rad]."""
         angles = self.sensors.angles
         return {name: float(angles[i]) for name, i in self._legs}
 
     def swing(self, stride: float) -> None:
-        """Swing hanging arms that no command uses against the legs; `stride` is the left foot's lead [m]."""
+        """Swing hanging, free arms opposite to the legs; `stride` is the left foot's lead [m]."""
         angle = min(max(self._arm_gain * stride, -MAX_ARM_SWING), MAX_ARM_SWING)
         hanging = self.motors.wanted(name for name, _, _ in self._arms)
         self.motors.sway(
@@ -155,7 +153,7 @@ class WalkController:
         )
 
     def centre_of_mass(self, legs: Mapping[str, float]) -> NDArray[np.float64]:
-        """Return the centre of mass (3,) in the torso's frame [m] with these angles of the legs [rad].
+        """Return the centre of mass in the torso's frame [m], Shape (3,), with these leg angles [rad].
 
         All other joints are at their goals.
         """
@@ -163,7 +161,7 @@ class WalkController:
 
 
 class WalkActivity:
-    """A walk: into its posture, step by step to the place, and to rest."""
+    """A walk: into the walking posture, a short rest, and steps until the goal is reached or the walk is ended."""
 
     def __init__(self, walker: WalkController, gait: Gait, now: float) -> None:
         self._walker, self._gait, self._now = walker, gait, now
@@ -175,7 +173,7 @@ class WalkActivity:
         self._cancelled = self._over = self._stumbled = False
 
     def steer(self, velocity: Velocity, now: float) -> bool:
-        """Change the velocity; return False if the walk goes to a place, is ending, or was not advanced to `now`."""
+        """Change the velocity; return False if the walk has no velocity, is ending, or was not advanced to `now`."""
         alive = self._now == now and not self._cancelled and not self._over
         goes_on = alive and isinstance(self._gait.goal, Velocity)
         if goes_on:
@@ -186,7 +184,7 @@ class WalkActivity:
     def advance(self, now: float) -> bool:
         """Continue until `now` [s]; return True at the end.
 
-        Raises RobotFailedError if a hazard stopped the walk, or if it missed its goal.
+        Raises RobotFailedError if a hazard or the stage's edge stopped the walk, or if the walk missed its goal.
         """
         self._now = now
         self._walker.balance.walking = True

@@ -17,11 +17,11 @@ from lumen.motion.wayfinding import DeadReckoning
 from lumen.ports import Whereabouts
 
 STILL_RATE = 0.15
-"""While the wheels stand still, a measured rate of turning below this counts as the gyrometer's error [rad/s]."""
+"""The measured turning rate below which a robot with still wheels counts as not turning [rad/s]."""
 
 
 class WheelOdometry:
-    """The position of the wheels' middle in the frame of the robot's start.
+    """The pose of the wheels' midpoint in the frame of the robot's start.
 
     `stage`, in the same frame, bounds where the robot may drive.
     """
@@ -40,16 +40,16 @@ class WheelOdometry:
 
     @property
     def whereabouts(self) -> Whereabouts:
-        """The estimate of the robot's position and its possible error."""
+        """The robot's estimated pose and the possible error."""
         return self._reckoning.whereabouts
 
     @property
     def doubt(self) -> float:
-        """The possible distance of the robot from the estimate because it was down [m]."""
+        """The possible position error from falls [m]."""
         return self._reckoning.slid
 
     def feel(self, dt: float) -> None:
-        """Advance the estimate by one control period of `dt` [s], by the wheels' way along the gyrometer's heading."""
+        """Advance the estimate by `dt` [s]: by the distance that the wheels rolled, along the gyrometer's heading."""
         rolled, heading = self._encoders(), self._sensors.heading
         moved, turned = rolled - self._rolled, wrap(heading - self._heading)
         self._rolled, self._heading = rolled, heading
@@ -68,13 +68,14 @@ class WheelOdometry:
             self._reckoning.slid += DRIFT_AFTER_FALL
 
     def keep(self) -> None:
-        """Inform the estimate that the robot stands again."""
+        """Record that the robot stands."""
         self._lost = False
 
     def check(self, *places: Pose) -> None:
-        """Raise RobotError if the robot would be farther beyond the stage at one of these places than it already is.
+        """Raise RobotError if one of these places is farther beyond the stage than the robot already is.
 
-        With a doubtful position, the stage is smaller by `doubt` on every side.
+        The stage counts as smaller by the base's reach and `doubt` on every side. Without a stage, every place is
+        allowed.
         """
         if self._stage is None:
             return
@@ -96,7 +97,7 @@ class WheelOdometry:
                     )
 
     def _encoders(self) -> NDArray[np.float64]:
-        """Return how far each wheel has rolled ahead [m] by its encoder."""
+        """Return the distance that each wheel has rolled ahead [m], by its encoder."""
         drive = self._drive
         angles = drive.signs * self._world.data.qpos[drive.angles]
         if self._step:

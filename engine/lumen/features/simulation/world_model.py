@@ -1,4 +1,4 @@
-"""The robot in its hall as a MuJoCo model: compiled once for the same files and kept on disk."""
+"""The robot in its hall as a MuJoCo model, compiled once for the same files and kept on disk."""
 
 import copy
 import hashlib
@@ -18,11 +18,11 @@ from lumen.project.memoization import memoize
 from lumen.upkeep.own_folders import CacheFolder
 
 KEPT = 16
-"""The maximum number of compiled worlds kept on disk, of 3 MB each."""
+"""The maximum number of compiled worlds kept on disk, of about 3 MB each."""
 MAX_BYTES = 32_000_000
 """The maximum total size of a world's files for which the compiled world is kept [bytes].
 
-Reading more at each start would take too long.
+Reading larger files at each start would take too long.
 """
 BINARY = "world.mjb"
 _LEVEL = 1
@@ -33,8 +33,9 @@ def physics(
 ) -> Physics:
     """Return the hall with the robot on its stage, ready to be simulated.
 
-    A second robot of the same body and files in `models` gets a copy of the model that was compiled for the first, in
-    this process or an earlier one. Raises RobotError as `model.load` does, and if MuJoCo can't build the world.
+    A later robot with the same body, files and variation gets a copy of the first robot's compiled model. Models
+    without a variation are also kept on disk for later processes. Raises RobotError as `model.load` does, or if MuJoCo
+    can't build the world.
     """
     folders = {models, (models / hall).parent}
     files = {path: _version(path) for folder in folders for path in _files(folder)}
@@ -59,7 +60,7 @@ def physics(
 
 
 def _kept(name: str, compiled: Callable[[], mujoco.MjModel]) -> mujoco.MjModel:
-    """Return the model kept under that name, or compile and keep it."""
+    """Return the model kept under this name; if it is missing or damaged, compile and keep it."""
     folder = CacheFolder("worlds", KEPT)
     if packed := folder.read(name):
         try:
@@ -75,7 +76,7 @@ def _kept(name: str, compiled: Callable[[], mujoco.MjModel]) -> mujoco.MjModel:
 
 @cache
 def _engine() -> str:
-    """Return a hash of the code that builds worlds, so that an edit or another dm_control invalidates kept worlds."""
+    """Return a hash of the code that builds worlds: an edit or another dm_control invalidates kept worlds."""
     return files_hash(Path(__file__).parent, Path(dm_control.__path__[0]))
 
 
@@ -84,6 +85,6 @@ def _files(folder: Path) -> list[Path]:
 
 
 def _version(path: Path) -> tuple[int, int, int]:
-    """Return the inode, size and time of modification of a file, which change whenever it changes."""
+    """Return a file's inode, size and modification time [ns]; a change of the file changes at least one of them."""
     status = path.stat()
     return status.st_ino, status.st_size, status.st_mtime_ns

@@ -1,4 +1,4 @@
-"""The cases in which a motion is played: after each posture that the behaviours may leave the robot in before it."""
+"""The cases in which a motion is played: after each posture in which the behaviours can leave the robot before it."""
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -67,9 +67,9 @@ class Case:
 
 
 def cases(project: Project) -> list[Case]:
-    """Return the cases of a project: every motion, every passage, and every style of life.
+    """Return a project's cases: every motion, every passage, and every style of life.
 
-    A motion is played from its start, and after everything that the behaviours do before it.
+    A motion is played from its starting posture, and after each movement that can precede it in the behaviours.
     """
     motions = project.motions
     ways: dict[str, list[Before]] = {name: [_to(motion.start or FIRST_POSTURE)] for name, motion in motions.items()}
@@ -97,7 +97,7 @@ def cases(project: Project) -> list[Case]:
 
 
 def _own(project: Project, shared: str) -> dict[str, str]:
-    """Return the robot's own folder of each file that replaces one in a `shared` folder, by the file's name.
+    """Return, by file name, the robot's own folder of each file that replaces a file of the folder `shared`.
 
     The files of other robots are not in the project.
     """
@@ -111,9 +111,9 @@ def _to(posture: str) -> Before:
 
 
 def _end(motions: Mapping[str, MotionDefinition], action: object) -> Before | None:
-    """Return the commands that lead to the robot's posture after this action.
+    """Return the commands that bring the robot to its posture after this action.
 
-    Return None if the action moves neither arms nor legs.
+    Return None if the action leaves the posture unchanged or plays an unknown motion.
     """
     match action:
         case Posture(name):

@@ -1,4 +1,4 @@
-"""The options of `lumen lint --physics`, and the summary that it prints."""
+"""The options of `lumen lint --physics`, and its printed summary."""
 
 import argparse
 from collections.abc import Sequence
@@ -15,7 +15,7 @@ ONLY_WITH = ("robots", "workers", "imperfections")
 
 
 class PhysicsOptions:
-    """`--physics` and its further options."""
+    """`--physics` and the options that need it."""
 
     def configure(self, parser: argparse.ArgumentParser) -> None:
         """Add the options to the parser."""
@@ -34,7 +34,7 @@ class PhysicsOptions:
         configure_imperfections(parser)
 
     def check(self, options: argparse.Namespace) -> None:
-        """Raise UsageError for options that can't be combined."""
+        """Raise UsageError for options that need `--physics` or can't be combined with it."""
         for name in ONLY_WITH:
             if vars(options)[name] is not None and not options.physics:
                 raise UsageError(f"--{name} needs --physics")
@@ -42,9 +42,9 @@ class PhysicsOptions:
             raise UsageError("--physics can't be combined with --watch, --fix, --diff or `-`")
 
     def more(self, found: Sequence[Findings], wanted: Wanted, options: argparse.Namespace) -> list[Findings]:
-        """Return the findings; with `--physics`, those of the motions in simulation are added.
+        """Return the findings, with `--physics` including those of the simulated motions.
 
-        With `--format text`, a summary of the simulations is printed.
+        With `--format text`, also print a summary of the simulations. Raises UsageError for an invalid option.
         """
         if not options.physics:
             return [*found]

@@ -1,4 +1,4 @@
-"""Keep the outcomes of motions in simulation under `.lumen/physics/`, so that each is simulated once."""
+"""Keep the outcomes of simulated motions under `.lumen/physics/`, to simulate each motion only once."""
 
 import hashlib
 import json
@@ -22,13 +22,13 @@ from lumen.robot.motion_codec import encode_motion
 from lumen.upkeep.own_folders import private_folder
 
 CODE = ("lumen.features.simulation", "lumen.fuzzy", "lumen.language", "lumen.motion", "lumen.robot")
-"""The packages whose code affects the outcome of a motion in simulation."""
+"""The packages whose code affects a simulated motion's outcome."""
 
 
 class OutcomeCache:
-    """Keeps outcomes by all that they depend on: the motion, the models and the engine's own code.
+    """Keeps outcomes by the data that they depend on: the motion, the models, the imperfections and the engine's code.
 
-    A folder that can't be written, and a file that can't be read, are ignored.
+    An unwritable folder or an unreadable file is ignored.
     """
 
     def __init__(self, project: Project, files: Mapping[str, bytes]) -> None:
@@ -44,7 +44,7 @@ class OutcomeCache:
         self._passages = _digest(passages.values())
 
     def recall(self, case: Case) -> dict[int, Outcome]:
-        """Return the known outcomes of a case by number of the robot; empty if there are none."""
+        """Return a case's known outcomes by robot number; empty if none are known."""
         try:
             data = json.loads(self._file(case).read_text(encoding="utf-8"))
             return {int(number): Outcome.from_json(outcome) for number, outcome in data.items()}

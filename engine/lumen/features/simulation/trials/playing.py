@@ -25,7 +25,7 @@ ROBOTS = 20
 """The number of variants that play each motion by default."""
 
 ProgressHook = Callable[[int, int, str], None]
-"""A function that is called with the number of finished performances, their total, and the name of the motion."""
+"""A function called with the number of finished performances, the total number, and the motion's name."""
 
 
 def played(
@@ -38,11 +38,12 @@ def played(
     imperfections: Imperfections | None = None,
     workers: Workers | None = None,
 ) -> tuple[Findings, list[CaseResult]]:
-    """Return a project's findings with those of its motions in simulation, and the results.
+    """Return a project's findings, including those of its simulated motions, and the results.
 
     Only motions in the requested files are played, and none if the project has errors. With `keep`, outcomes are kept,
     and only motions without a known outcome are played. `imperfections` replace the project's. `workers` share the
-    work; the default is this process. Raises MissingExtraError if the simulation is not installed, and WorkersError.
+    work; the default is this process. Raises MissingExtraError if the simulation is not installed, or WorkersError if
+    the workers fail.
     """
     root = Path(found.root)
     project = check_files(root, found.files)[0]
@@ -67,7 +68,7 @@ def played(
 
 
 def play_case(kit: UnpackedKit, case: int, robot: int, imperfections: Imperfections) -> Outcome:
-    """Play a case, given by its index in the project, on the robot of that number; return the outcome.
+    """Play the case with this index in the project on the robot with this number; return the outcome.
 
     This is a task for workers.
     """
@@ -91,7 +92,7 @@ def _play(
     robots: int,
     tell: ProgressHook,
 ) -> Iterator[tuple[int, int, Outcome]]:
-    """Yield the case, the robot and the outcome of each unknown outcome as it arrives.
+    """Yield the case's index, the robot's number and the outcome of each unknown outcome as it arrives.
 
     The work is ordered by robot, since each robot has its own model to compile.
     """
@@ -113,7 +114,7 @@ def _play(
 
 
 def summary(rehearsals: Sequence[CaseResult]) -> str:
-    """Return a line for each case: the number of robots that reached its end, and the lean of the torso."""
+    """Return a line for each case: the number of robots that succeeded, the torso's lean, and the feet's slide."""
     lines = []
     for rehearsal in rehearsals:
         case, tried = rehearsal.case, rehearsal.tried

@@ -16,7 +16,7 @@ STUCK_AFTER = 60.0
 """The time by which a command may exceed its motion before it counts as stuck [s]."""
 
 REST_BEFORE, REST_AFTER = 0.3, 0.5
-"""The time that the robot rests before and after the motion [s]."""
+"""The durations of the robot's rest before and after the motion [s]."""
 
 RETRIED_AFTER = 1.5
 """The time by which a passage may exceed its motion before it counts as tried again [s]."""
@@ -26,7 +26,7 @@ LEANING_TILT, FALLING_TILT = 15.0, 30.0
 
 DONE, FELL = "done", "fell"
 MAX_FOOT_SLIDE = 0.01
-"""The largest slide of a foot under load that is accepted [m]."""
+"""The largest accepted slide of a foot under load [m]."""
 
 BEARING_FORCE = 5.0
 """The force above which a foot bears load [N]."""
@@ -44,13 +44,13 @@ class Outcome:
     answer: str = ""
     """`done`, `fell`, or the reason why the robot stopped; empty if it did not reach the motion's beginning."""
     at: float = 0.0
-    """The time of the answer, or of the beginning of the fall [s]."""
+    """The time of the answer, or of the fall's beginning [s]."""
     tilt: float = 0.0
     """The maximum tilt of the torso [degrees]."""
     leaned: float = 0.0
     """The time of the maximum tilt [s]."""
     collisions: dict[str, TimedAmount] = field(default_factory=dict)
-    """By `LINK and LINK`, the time at which they first touched and how long they touched [s]."""
+    """By `LINK and LINK`, the time of the first contact and the total duration of all contacts [s]."""
     exhausted: dict[str, TimedAmount] = field(default_factory=dict)
     """By joint, the time of the longest period at full torque without a pause, and its length [s]."""
     behind: dict[str, TimedAmount] = field(default_factory=dict)
@@ -66,7 +66,7 @@ class Outcome:
     def from_json(cls, data: Mapping[str, Any]) -> Self:
         """Return the outcome from JSON data.
 
-        Raises KeyError, TypeError, ValueError or AttributeError if the data is not one.
+        Raises KeyError, TypeError, ValueError or AttributeError if the data is invalid.
         """
         moments = {kind: {str(k): (float(a), float(b)) for k, (a, b) in data[kind].items()} for kind in _KINDS}
         return cls(str(data["answer"]), float(data["at"]), float(data["tilt"]), float(data["leaned"]), **moments)
@@ -107,7 +107,7 @@ def _answer(event: Event) -> str:
 
 
 class _Watch:
-    """Collects the problems of a performance, sample by sample; for a passage or a style of life only falls."""
+    """Collects a performance's problems, sample by sample; for a passage or a style of life, only tilt and falls."""
 
     def __init__(self, passage: bool) -> None:
         self.outcome, self._passage = Outcome(), passage
@@ -130,7 +130,7 @@ class _Watch:
             self._slide(strain.soles)
 
     def closed(self, robot: Subject) -> Outcome:
-        """Return the outcome after a moment of rest, in which the robot may still fall."""
+        """Return the outcome after a short rest, in which the robot can still fall."""
         if self.outcome.answer == DONE:
             robot.advance(REST_AFTER)
             self.outcome.tilt = max(self.outcome.tilt, degrees(robot.strain().tilt))
@@ -146,7 +146,7 @@ class _Watch:
             self.outcome.collisions[f"{one} and {other}"] = begin, round(lasted + POLL_INTERVAL, 3)
 
     def _exhaust(self, strain: Strain) -> None:
-        """Record the longest time without a pause at which each motor gave its full torque."""
+        """Record each motor's longest time at full torque without a pause."""
         self._since = {joint: self._since.get(joint, self._now) for joint in strain.exhausted}
         for joint, since in self._since.items():
             _most(self.outcome.exhausted, joint, since, self._now - since)
@@ -156,7 +156,7 @@ class _Watch:
             _most(self.outcome.behind, joint, self._now, angle)
 
     def _slide(self, soles: Mapping[str, Sole]) -> None:
-        """Record the distance of each foot from its place at the beginning of its load."""
+        """Record the largest distance of each loaded foot from the place where its load began."""
         for side, sole in soles.items():
             if sole.load < BEARING_FORCE:
                 self._stands.pop(side, None)
@@ -168,14 +168,14 @@ class _Watch:
 
 
 def _most(found: dict[str, TimedAmount], what: str, at: float, value: float) -> None:
-    """Keep the amount and its time if it exceeds the one kept before."""
+    """Keep the amount and its time if the amount exceeds the one kept before."""
     if value > found.get(what, (0.0, 0.0))[1]:
         found[what] = round(at, 3), round(value, 4)
 
 
 @dataclass(frozen=True)
 class CaseResult:
-    """A case and its outcome with each robot; the first robot is as its model describes it."""
+    """A case and its outcome on each robot; the first robot is the unchanged model."""
 
     case: Case
     outcomes: Sequence[Outcome]
@@ -186,6 +186,6 @@ class CaseResult:
         return [outcome for outcome in self.outcomes if outcome.answer]
 
     def succeeded(self, outcome: Outcome) -> bool:
-        """Return True if the robot reached the end of the motion; of a passage, at its first attempt."""
+        """Return True if the robot reached the motion's end; for a passage, at the first attempt."""
         late = self.case.passage and outcome.at > self.case.motion.duration + RETRIED_AFTER
         return outcome.answer == DONE and not late

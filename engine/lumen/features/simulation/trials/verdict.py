@@ -1,4 +1,4 @@
-"""Report problems of a motion that was played in simulation, at the keyframes where they showed."""
+"""Report problems of a simulated motion, at the keyframes where they occurred."""
 
 from collections.abc import Callable, Collection, Iterator, Mapping
 from math import degrees
@@ -12,19 +12,19 @@ from lumen.lint.on_request import COMES_LATE, FALLS, FEET_SLIDE, NOT_PLAYED, OVE
 from lumen.ports import Live
 
 MAX_CONTACT_TIME = 0.04
-"""The longest contact between two links that is accepted [s]."""
+"""The longest accepted contact between two links [s]."""
 
 MAX_FULL_TORQUE_TIME = 0.3
-"""The longest time for which a motor may give its full torque without a pause [s]."""
+"""The longest accepted time of a motor at full torque without a pause [s]."""
 
 MAX_JOINT_LAG = 0.35
-"""The largest distance of a joint behind the motion that is accepted [rad]."""
+"""The largest accepted distance of a joint behind the motion [rad]."""
 
 MAX_LIVING_TILT = 5.0
-"""The largest lean of the torso that is accepted in lifelike movements [degrees]: the shipped styles reach 0.5."""
+"""The largest accepted lean of the torso in lifelike movements [degrees]: the shipped styles reach 0.5."""
 
 MAX_FAILED_SHARE = 0.1
-"""The largest share of attempts at a passage that may fail: the robot retries it."""
+"""The largest accepted share of robots that fail a passage at the first attempt: robots retry passages."""
 
 _FEET = {"L": "the left foot", "R": "the right foot"}
 _JOINTS = (COMES_LATE, OVERLOADED)
@@ -43,7 +43,7 @@ class _Judge:
         self._legs = frozenset(role.joint for leg in body.roles.legs.values() for role in leg.values())
 
     def judge(self) -> Iterator[Diagnostic]:
-        """Yield the findings; after a serious one, its consequences are left out."""
+        """Yield the findings, leaving out the consequences of more serious ones."""
         tried = self._rehearsal.tried
         if not tried:
             return
@@ -65,11 +65,11 @@ class _Judge:
                 f"the torso leans {most.tilt:.0f} deg when the robot {self._when()}: at 45 deg, it counts as fallen"
             )
             yield self._found(UNSTEADY, message, "make the robot lean less", self._keys(most.leaned, self._legs))
-            return  # a consequence of the leaning
+            return  # further problems are consequences of the lean
         worst = [*self._worst(SELF_COLLISION, lambda o: o.collisions, MAX_CONTACT_TIME)]
         if worst or (failed and failed[0] is self._rehearsal.outcomes[0]):
             yield from worst
-            return  # a consequence of the collision or fall
+            return  # further problems are consequences of the collision or fall
         slides = [*self._worst(FEET_SLIDE, lambda o: o.slid, MAX_FOOT_SLIDE)]
         yield from slides
         spared = self._legs if slides else ()
@@ -77,7 +77,10 @@ class _Judge:
         yield from late or self._worst(OVERLOADED, lambda o: o.exhausted, MAX_FULL_TORQUE_TIME, spared)
 
     def _failure(self, failed: list[Outcome], itself: bool) -> Iterator[Diagnostic]:
-        """Report a fall, or a motion that does not end: on the robot itself (`itself`), or only on variants."""
+        """Report a fall or an unfinished motion: of the unchanged robot (`itself`), or of variants only.
+
+        Report nothing if an accepted share of variants fails a passage.
+        """
         worst = failed[0]
         what = "falls" if worst.answer == FELL else f"does not finish: {worst.answer}"
         if worst.answer == "done":
@@ -107,7 +110,7 @@ class _Judge:
         limit: float,
         spared: Collection[str] = (),
     ) -> Iterator[Diagnostic]:
-        """Report the amount that exceeds its limit most, at its time, and the other joints or links that exceed it."""
+        """Report the largest amount if it reaches `limit`, at its time, and the other joints or links that reach it."""
         tried = self._rehearsal.tried
         beyond = [
             (moment, what)
@@ -127,15 +130,16 @@ class _Judge:
         yield self._found(code, message, hint, self._keys(at, joints))
 
     def _when(self, *, plural: bool = False) -> str:
-        """Return the robot's activity in words: `plays this motion`, or `lives like this`."""
+        """Return the robot's activity in words, such as `plays this from Stand` or `lives like this`."""
         if self._case.living:
             return "live like this" if plural else "lives like this"
         return f"{'play' if plural else 'plays'} this {self._case.way}"
 
     def _keys(self, at: float, joints: Collection[str]) -> NodePath:
-        """Return the path of the keyframe that the robot was moving to at `at` [s], preferably one of these joints.
+        """Return the path of the keyframe to which the robot was moving at `at` [s], if possible one of these joints.
 
-        In a style of life it is the path of the sway that moves the legs fastest, or else all joints.
+        For a style of life, return the path of the sway that moves the legs fastest, or, without legs, all joints. The
+        path is empty if there is no keyframe or sway.
         """
         if isinstance(self._case.command, Live):
             sways = self._case.command.style.sways
@@ -147,7 +151,7 @@ class _Judge:
         return _keyframe(keys[0]) if keys else ()
 
     def _shaking(self, sway: Sway) -> tuple[float, float]:
-        """Return a sway's amplitude per period [rad/s], of its legs and of all its joints; larger ones are riskier."""
+        """Return a sway's summed amplitudes per period [rad/s], of leg joints and of all joints; larger is riskier."""
         legs = sum(abs(angle) for joint, angle in sway.joints.items() if joint in self._legs)
         return legs / sway.period, sum(map(abs, sway.joints.values())) / sway.period
 
@@ -175,7 +179,7 @@ def _name(what: str) -> str:
 
 
 def _keyframe(key: Keyframe) -> NodePath:
-    """Return the path of a key's keyframe: the innermost item of a list of keyframes."""
+    """Return the path of a key's keyframe: the innermost item of a list of keyframes, or `return`."""
     last = max((i for i, step in enumerate(key.where) if step == "keyframes"), default=None)
     if last == len(key.where) - 1:
         return ("return",)
