@@ -1,4 +1,4 @@
-"""Faces and people in the images of a camera."""
+"""Detection of faces and people in a camera's images."""
 
 from lumen.feature import Feature, ModuleRow
 

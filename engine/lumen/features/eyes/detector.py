@@ -11,15 +11,15 @@ if TYPE_CHECKING:
     from lumen.features.eyes.pictures import Grey
 
 FACE_CASCADE = "haarcascade_frontalface_alt.xml"
-"""The stump-based Haar cascade of R. Lienhart: of those in the package its box fits a face most tightly."""
+"""R. Lienhart's stump-based Haar cascade: of the package's cascades, its box fits a face most tightly."""
 SEARCH_WIDTH = 320
 """The width to which pictures are scaled [px]: a face at 2 m is then 22 px wide, and detection takes 50 ms."""
 SCALE_STEP, MIN_NEIGHBOURS, MIN_FACE_SIZE = 1.05, 3, 20
-"""The factor of the cascade's growth, the number of overlapping hits that make a face, and its smallest size [px]."""
+"""The cascade's scale factor, the number of overlapping hits that make a face, and the smallest face size [px]."""
 RIM_WIDTH = 30
-"""The extension of pictures beyond their edges [px], so that faces with a cut-off forehead are found."""
+"""The extension of pictures beyond their edges [px], which helps to find faces with a cut-off forehead."""
 MIN_PERSON_WEIGHT = 0.4
-"""The least distance of a person's hit from the separating plane."""
+"""The minimum distance of a person's hit from the classifier's separating plane."""
 
 
 class Box(NamedTuple):
@@ -32,11 +32,11 @@ class Box(NamedTuple):
 
     @property
     def centre(self) -> tuple[float, float]:
-        """The middle of the rectangle."""
+        """The rectangle's centre [px]."""
         return self.x + self.width / 2, self.y + self.height / 2
 
     def holds(self, place: tuple[float, float]) -> bool:
-        """Return whether a point is in the rectangle."""
+        """Return True if a point [px] is in the rectangle."""
         return 0.0 <= place[0] - self.x <= self.width and 0.0 <= place[1] - self.y <= self.height
 
 
@@ -59,17 +59,16 @@ class PersonDetector:
         self._people.setSVMDetector(cv2.HOGDescriptor_getDefaultPeopleDetector())
 
     def faces(self, grey: "Grey") -> list[Box]:
-        """Return the boxes of faces [px], the largest, and so the nearest, first."""
+        """Return the boxes of faces [px], the largest, and so probably the nearest, first."""
         small, zoom = self._small(grey)
         framed = self._cv2.copyMakeBorder(small, RIM_WIDTH, RIM_WIDTH, RIM_WIDTH, RIM_WIDTH, self._cv2.BORDER_REPLICATE)
         found = self._faces.detectMultiScale(framed, SCALE_STEP, MIN_NEIGHBOURS, minSize=(MIN_FACE_SIZE, MIN_FACE_SIZE))
         return _sorted([(x - RIM_WIDTH, y - RIM_WIDTH, w, h) for x, y, w, h in found], zoom)
 
     def people(self, grey: "Grey", faces: Sequence[Box] = ()) -> list[Box]:
-        """Return people who are visible from head to foot (Dalal and Triggs, CVPR 2005), and those of the given faces.
+        """Return the boxes of people visible from head to foot (Dalal and Triggs, CVPR 2005), or known from `faces`.
 
-        The largest come first. A person near the robot is not visible as a whole: the box is then derived from the
-        face.
+        The largest come first. A person near the robot is not fully visible, so the box is derived from the face.
         """
         whole = self._whole(grey)
         near = [_below(face, *grey.shape) for face in faces if not any(box.holds(face.centre) for box in whole)]
@@ -94,7 +93,7 @@ class PersonDetector:
 
 
 def _below(face: Box, height: int, width: int) -> Box:
-    """Return the visible box of the person with that face: three faces wide and seven high."""
+    """Return the visible box of the person with this face: three face widths wide and seven high."""
     left, top = max(0.0, face.x - face.width), max(0.0, face.y - face.height / 2)
     right, bottom = min(float(width), face.x + 2 * face.width), min(float(height), top + 7 * face.height)
     return Box(left, top, right - left, bottom - top)

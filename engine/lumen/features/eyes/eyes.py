@@ -1,4 +1,4 @@
-"""Examines the camera's images, and publishes what they show."""
+"""Examines the camera's images, and publishes the faces and people found."""
 
 import time
 from collections.abc import Callable, Mapping
@@ -26,7 +26,7 @@ ROBOT_CAMERA = "robot"
 
 
 class VideoSource:
-    """Frames of a webcam, given by its number, or of a video file in `root`. Raises ModuleError without that source."""
+    """The frames of a webcam, given by its number, or of a video file in `root`. Raises ModuleError if neither opens."""
 
     def __init__(self, camera: int | str, root: Path) -> None:
         cv2 = self._cv2 = opencv()
@@ -49,7 +49,7 @@ class VideoSource:
     def read(self) -> Frame | None:
         """Return the next frame, without a time on the robot's clock; None at the end.
 
-        Raises ModuleError if its size is out of range.
+        Raises ModuleError if the frame's size is out of range.
         """
         there, pixels = self._capture.read()
         if not there:
@@ -66,9 +66,9 @@ FACES_FILE = "faces.npz"
 LOOK_INTERVAL = 0.1
 """The default time between two examined images [s]."""
 PEOPLE_INTERVAL = 1.0
-"""The time between two searches for people [s], which are slower."""
+"""The minimum time between two searches for people [s], which are slower than searches for faces."""
 NAME_INTERVAL = 2.0
-"""The time between two messages with the same recognised name [s]."""
+"""The minimum time between two messages with the same recognised name, while the face stays visible [s]."""
 NEW_VISITOR_GAP = 1.0
 """The time without a face after which the next one is a new visitor's [s]."""
 UNKNOWN, UNRECOGNISED, FAILED = "unknown", "face unrecognized", "error cvException"
@@ -76,21 +76,21 @@ UNKNOWN, UNRECOGNISED, FAILED = "unknown", "face unrecognized", "error cvExcepti
 FACE_WIDTH = 0.16
 """The default width of the detector's box around an adult's face [m]."""
 MAX_NAME_CHARACTERS = 60
-"""The longest name under which a face is learnt."""
+"""The maximum number of characters in the name of a face."""
 
 
 class Eyes(Module):
-    """The visual module. A name on `lumen.visual.command` is given to the next faces seen, until they are learnt.
+    """The visual module. After a name on `lumen.visual.command`, the next faces seen are learnt under this name.
 
-    `file` keeps the faces with names, None for this process only. Raises ModuleError if OpenCV, its models or the
-    camera are missing.
+    `file` keeps the named faces; with None, they are kept in this process only. Raises ModuleError if OpenCV, its
+    models or the camera are missing, if `file` is unusable, or if the window's port is taken.
     """
 
     name = EYES
 
     @classmethod
     def make(cls, project: Project, bus: Bus, tell: Callable[[str], None], folder: Path | None) -> Self:
-        """Make the module with its faces in `folder`, or without a file if that is None."""
+        """Make the module with its faces in `folder`, or without a file if `folder` is None."""
         return cls(project, bus, tell, folder and folder / FACES_FILE)
 
     def __init__(
@@ -122,14 +122,14 @@ class Eyes(Module):
             )  # on this terminal only, since the address is a secret
 
     def hears(self) -> Mapping[str, MessageHandler]:
-        """Return the handlers of the routes that the module listens to."""
+        """Return the message handlers by route."""
         heard: dict[str, MessageHandler] = {"visual_command": self._enrol, "forgotten": self._forget}
         if self._window:
             heard["joint"] = self._joints
         return heard if self._source else {str(self.settings.options.get("images", IMAGE)): self._image, **heard}
 
     def idle(self) -> float | None:
-        """Examine the next frame of the module's own source, and delete expired faces.
+        """Examine the next frame of the module's own source, if any, and delete expired faces hourly.
 
         Return the time until the next call [s].
         """
@@ -149,7 +149,7 @@ class Eyes(Module):
             self._window.close()
 
     def look(self, frame: Frame, now: float) -> None:
-        """Publish the nearest face and the largest person in a frame taken at `now` [s].
+        """Publish the nearest face and, every `PEOPLE_INTERVAL`, the largest person in a frame taken at `now` [s].
 
         Raises ModuleError if OpenCV fails.
         """
@@ -204,7 +204,7 @@ class Eyes(Module):
         self._seen = now
 
     def _joints(self, message: Message) -> None:
-        """Note the head's angles for the window."""
+        """Record the head's angles, which the window shows."""
         match message.body:
             case {"name": list(names), "angle": list(angles)}:
                 found = {n: a for n, a in zip(map(str, names), angles, strict=False) if isinstance(a, int | float)}
@@ -217,7 +217,7 @@ class Eyes(Module):
             self._window.show(frame.grey, faces, self._people, "   ".join([*where, self._head]).strip())
 
     def _place(self, frame: Frame, box: Box) -> tuple[float, float]:
-        """Return the middle of a box, in pixels of the robot's camera."""
+        """Return a box's centre, in pixels of the robot's camera, or of the frame if the camera is unknown."""
         camera, (height, width) = self.project.body.camera, frame.grey.shape
         x, y = box.centre
         if camera is None:
@@ -226,7 +226,7 @@ class Eyes(Module):
         return min(max(x, 0.0), float(camera.width)), min(max(y, 0.0), float(camera.height))
 
     def _distance(self, frame: Frame, face: Box) -> dict[str, float]:
-        """Return the face's distance, from its width in the image; empty for a body whose camera is unknown."""
+        """Return the face's `distance` [m], from its width in the image; empty if the body's camera is unknown."""
         camera = self.project.body.camera
         if camera is None:
             return {}
@@ -240,14 +240,14 @@ class Eyes(Module):
             self._tell(f"has learnt the face of {self._learning}")
 
     def _enrol(self, message: Message) -> None:
-        """Learn the next faces under this name: the message is a bare name, as in 2015."""
+        """Start to learn the next faces under the name in the message, which is a bare text, as in 2015."""
         name = message.body.strip() if isinstance(message.body, str) else ""
         if not name or len(name) > MAX_NAME_CHARACTERS or not name.isprintable():
             raise ModuleError(f"a message on {message.key} needs a `name` of at most {MAX_NAME_CHARACTERS} characters")
         self._learning, self._left = name, MAX_PICTURES_PER_NAME
 
     def _forget(self, message: Message) -> None:
-        """Delete the faces of a forgotten person."""
+        """Delete a forgotten person's faces, and stop learning them."""
         match message.body:
             case {"name": str(name)} if name_key(name):
                 if name_key(self._learning) == name_key(name):
@@ -268,7 +268,7 @@ def _when(frame: Frame) -> dict[str, float]:
 
 
 def forget_faces(folder: Path, name: str, found: Forgetting) -> None:
-    """Delete the pictures of a person's face in a project's state folder, and add their number to `found`."""
+    """Delete the pictures of a person's face in an exhibition's home `folder`, and record the result in `found`."""
 
     def work() -> None:
         if gone := FaceGallery(file, time.time).forget(name):

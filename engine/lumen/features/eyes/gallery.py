@@ -1,4 +1,4 @@
-"""Recognises faces by local binary patterns of faces that were shown together with a name."""
+"""Recognises faces by comparing their local binary patterns with those of faces learnt under a name."""
 
 import io
 from collections.abc import Callable, Iterable
@@ -17,18 +17,18 @@ if TYPE_CHECKING:
 FACE_SIZE = 96
 """The width and height at which faces are compared [px]."""
 MAX_PICTURES_PER_NAME = 8
-"""The most pictures of a face that are kept for a name; a further one replaces the oldest."""
+"""The maximum number of face pictures kept for a name; another picture replaces the oldest."""
 MAX_DISTANCE = 70.0
-"""The largest distance (chi-square of the patterns' histograms) from a known face that counts as the same."""
+"""The largest chi-square distance between the patterns' histograms at which a face counts as a known face."""
 MAX_PICTURES = 500
-"""The most pictures of all names; beyond it no new face is learnt."""
+"""The maximum number of pictures of all names; beyond it, no new face is learnt."""
 
 
 class FaceGallery:
-    """The faces with names, in `file` or, without one, in this process only. Only the owner may read the file.
+    """The named faces, kept in `file`, or in this process only if `file` is None. Only the owner can read the file.
 
-    Since these are pictures of people, `forget` deletes those of a name, and `expire` those made before a time. Raises
-    ModuleError if the file is unusable.
+    Since these are pictures of people, `forget` deletes a name's pictures, and `expire` deletes pictures made before a
+    time. Raises ModuleError if the file is unusable.
     """
 
     def __init__(self, file: Path | None, clock: Callable[[], float]) -> None:
@@ -45,7 +45,7 @@ class FaceGallery:
         return sorted({name for name, _, _ in self._faces})
 
     def enrol(self, name: str, grey: "Grey", face: Box) -> int:
-        """Store this face under a name; return the number of its pictures.
+        """Store this face under a name; return the name's number of pictures.
 
         Raises ModuleError if the gallery is full or the file can't be written.
         """
@@ -62,14 +62,14 @@ class FaceGallery:
         return sum(name_key(other) == key for other, _, _ in self._faces)
 
     def who(self, grey: "Grey", face: Box) -> str:
-        """Return the name of the face, empty if it is unknown."""
+        """Return the face's name; empty if the face is unknown."""
         if self._model is None:
             return ""
         label, distance = self._model.predict(self._cut(grey, face))
         return self.names[label] if distance <= MAX_DISTANCE else ""
 
     def forget(self, name: str) -> int:
-        """Delete the pictures of a name, in any spelling of it; return their number."""
+        """Delete a name's pictures, whatever its case, spacing or form in Unicode; return their number."""
         return self._keep([face for face in self._faces if name_key(face[0]) != name_key(name)])
 
     def expire(self, before: float) -> int:
@@ -101,7 +101,7 @@ class FaceGallery:
             self._model.train([face for _, _, face in self._faces], labels)
 
     def _save(self) -> None:
-        """Train with the present faces, and replace the file."""
+        """Train with the present faces, and replace the file. Raises ModuleError if the file can't be written."""
         self._train()
         if self._file is None:
             return

@@ -16,18 +16,18 @@ if TYPE_CHECKING:
     """A grey image, Shape (height, width)."""
 
 MIN_PICTURE_SIZE, MAX_PICTURE_SIZE = 32, 4096
-"""The range of a picture's width and height [px]: smaller ones show nothing usable, larger ones take too long."""
+"""The range of a picture's width and height [px]: smaller pictures show nothing usable, larger ones take too long."""
 
 
 class Frame(NamedTuple):
-    """A grey picture, and its time [s, the robot's clock]; None if unknown."""
+    """A grey picture and its time on the robot's clock [s]; the time is None if unknown."""
 
     grey: "Grey"
     time: float | None
 
 
 def frame_of(body: Any) -> Frame:
-    """Return the frame in an image's message. Raises ModuleError if it is invalid or its size is out of range."""
+    """Return the frame in an image message. Raises ModuleError if the image is invalid or its size is out of range."""
     url = body.get("contentUrl") if isinstance(body, dict) else None
     if not isinstance(url, str) or not url.startswith("data:image/"):
         raise ModuleError("an image is ignored: its `contentUrl` must begin with `data:image/`")
@@ -49,7 +49,7 @@ def _grey(data: bytes) -> "Grey":
             grey: Grey = np.asarray(picture.convert("L"))
     except ModuleError:
         raise
-    except Exception as error:  # Pillow's decoders raise many types
+    except Exception as error:  # Pillow's decoders raise exceptions of many types
         raise ModuleError(f"an image is ignored: it cannot be read ({type(error).__name__})") from None
     return grey
 

@@ -1,4 +1,4 @@
-"""A live view of what the eyes see and find, in a browser on this machine."""
+"""A live view of the eyes' images and findings, in a browser on this machine."""
 
 import threading
 from typing import TYPE_CHECKING
@@ -17,13 +17,13 @@ PART_BOUNDARY = "frame"
 FACE_COLOUR, PERSON_COLOUR, TEXT_COLOUR = (0, 200, 0), (200, 120, 0), (255, 255, 255)
 """Colours as blue, green, red."""
 WAKE_INTERVAL = 1.0
-"""The time between two checks, without a new picture, whether the window is closed [s]."""
+"""The time between two checks for a closed window or browser while no new picture arrives [s]."""
 
 
 class Window:
-    """Serves `address` as a stream of JPEGs; pictures are made only while a browser is connected.
+    """Serves a stream of JPEGs at `address`; pictures are made only while a browser is connected.
 
-    Port 0 means any free port. Raises ModuleError if the port is taken.
+    Port 0 means any free port. Raises ModuleError if the port can't be used.
     """
 
     def __init__(self, port: int) -> None:
@@ -39,7 +39,7 @@ class Window:
         self._thread.start()
 
     def show(self, grey: "Grey", faces: list[Box], people: list[Box], words: str) -> None:
-        """Show the picture with frames around the visitor's face and each person, and a line of text."""
+        """Show the picture with a box around each face and person, and a line of text; do nothing without a browser."""
         if not self._lookers:
             return
         cv2 = self._cv2
@@ -56,7 +56,7 @@ class Window:
             self._changed.notify_all()
 
     def serve(self, page: "WindowPage") -> None:
-        """Send every new picture until the browser disconnects."""
+        """Send new pictures until the browser disconnects or the window is closed."""
         page.send_response(200)
         page.send_header("Content-Type", f"multipart/x-mixed-replace; boundary={PART_BOUNDARY}")
         page.send_header("Cache-Control", "no-store")
@@ -73,7 +73,7 @@ class Window:
                 head = f"--{PART_BOUNDARY}\r\nContent-Type: image/jpeg\r\nContent-Length: {len(data)}\r\n\r\n"
                 page.wfile.write(head.encode() + data + b"\r\n")
         except OSError:
-            pass  # the browser is gone, or reads nothing
+            pass  # the browser disconnected or stopped reading
         finally:
             with self._changed:
                 self._lookers -= 1

@@ -1,4 +1,4 @@
-"""The access to the eyes' window: a few browsers on this machine that know its address."""
+"""Access control for the eyes' window: a few browsers on this machine, with the secret address."""
 
 import hmac
 import secrets
@@ -11,18 +11,18 @@ from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from typing import Any
 
 WINDOW_HOST = "127.0.0.1"
-"""Only this machine may see the pictures of visitors."""
+"""The window's host: visitors' pictures are shown on this machine only."""
 MAX_CONNECTIONS = 8
-"""The most open connections; a further one is closed without an answer."""
+"""The maximum number of open connections; another connection is closed without an answer."""
 REQUEST_TIMEOUT = 5.0
-"""The time in which a request must arrive, and a picture must be read [s]."""
+"""The maximum time for a request to arrive, and for a browser to read a picture [s]."""
 
 
 class WindowServer(ThreadingHTTPServer):
-    """Calls `serve` with each request for its complete `address`.
+    """Calls `serve` with each request for the complete `address`.
 
-    The address contains a token, new at each start, so that other programs and web pages can't find it. Only requests
-    with its own `Host` are answered, which prevents DNS rebinding. Raises OSError if the port is taken.
+    The address contains a token, new at each start, which hides it from other programs and web pages. Only requests
+    with the server's own `Host` are answered, which prevents DNS rebinding. Raises OSError if the port is taken.
     """
 
     daemon_threads = True
@@ -38,21 +38,21 @@ class WindowServer(ThreadingHTTPServer):
         self.address = f"http://{self._hosts[0]}/{self._token}/"
 
     def refusal(self, path: str, hosts: list[str]) -> int:
-        """Return the HTTP status with which a request is refused, 0 if it is answered."""
+        """Return the HTTP status for a refusal: 421 for a foreign host, 404 for another path; 0 to answer the request."""
         if len(hosts) != 1 or hosts[0].strip().lower() not in self._hosts:
             return 421
         token = path.removeprefix("/").removesuffix("/").encode("utf-8", "replace")
         return 0 if hmac.compare_digest(token, self._token.encode()) else 404
 
     def process_request(self, request: Any, client_address: Any) -> None:
-        """Handle a request in a thread, or close it if there are too many."""
+        """Handle a connection in a thread, or close it if `MAX_CONNECTIONS` are open."""
         if self._free.acquire(blocking=False):
             super().process_request(request, client_address)
         else:
             self.shutdown_request(request)
 
     def process_request_thread(self, request: Any, client_address: Any) -> None:
-        """Handle a request, then free its place."""
+        """Handle a connection, then release its slot."""
         try:
             super().process_request_thread(request, client_address)
         finally:
@@ -69,7 +69,7 @@ class WindowPage(BaseHTTPRequestHandler):
     timeout = REQUEST_TIMEOUT
 
     def setup(self) -> None:
-        """Start the timer of the request."""
+        """Start the request's timer, which closes the connection."""
         self._alarm = threading.Timer(self.timeout, self._hang_up)
         self._alarm.daemon = True
         self._alarm.start()
@@ -89,7 +89,7 @@ class WindowPage(BaseHTTPRequestHandler):
             self.server.serve(self)
 
     def wanted(self) -> bool:
-        """Return whether the browser is still connected. Raises OSError if the connection is broken."""
+        """Return True if the browser is still connected. Raises OSError if the connection is broken."""
         said = select.select([self.connection], [], [], 0.0)[0]
         return not said or self.connection.recv(1, socket.MSG_PEEK) != b""
 

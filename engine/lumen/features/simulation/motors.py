@@ -52,8 +52,8 @@ class Motors:
     """Drives every joint to its goal within the body's limits and speeds.
 
     `goal` has the joints' goals and `command` the angles sent to their servos, both of Shape (joints,) [rad; hands
-    0..1]. `effort` has each joint's maximum motor torque [N m], 0 for a joint that another joint's motor moves. `voltage` is
-    the supply voltage [V].
+    0..1]. `effort` has each joint's maximum motor torque [N m], 0 for a joint that another joint's motor moves.
+    `voltage` is the supply voltage [V].
     """
 
     def __init__(self, world: World, lacking: Imperfections | None = None) -> None:

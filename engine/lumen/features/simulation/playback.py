@@ -52,7 +52,7 @@ class MotionPlayback:
 
     @property
     def missed(self) -> str:
-        """A message about the joints that missed their keys, with the largest errors and their times; empty for none."""
+        """A message about joints that missed their keys, with the largest errors and their times; empty for none."""
         far = sorted(self._missed.items(), key=lambda item: -item[1][0])
         parts = (f"`{joint}` was {by:.2g} {self._motors.unit(joint)}off at {at:.2f} s" for joint, (by, at) in far)
         return f"in `{self._motion.name}` a joint missed its goal: {', '.join(parts)}" if far else ""
@@ -79,7 +79,7 @@ class MotionPlayback:
         return self._play(self._trajectory, now - self._begin)
 
     def cancel(self) -> None:
-        """Restore the motion's lights, empty the hand, and begin to return to the starting posture in `RECOVERY_TIME`."""
+        """Restore the motion's lights, empty the hand, and return to the starting posture within `RECOVERY_TIME`."""
         for cue in self._motion.cues:
             if cue.kind == "leds" and isinstance(cue.value, Mapping):
                 self._lights.restore(cue.value)

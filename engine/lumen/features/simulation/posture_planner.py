@@ -62,8 +62,8 @@ class PosturePlanner:
 
     A robot that ends on the floor begins again from there, with at most `MAX_ATTEMPTS` attempts. A cancelled way halts,
     and the next way continues from there. `speed` is a share of the maximum. `settle` first brings the joints to the
-    present posture, for a robot whose joints can be at any angles. `after` is called at the end. Raises RobotError if no
-    way leads to a goal.
+    present posture, for a robot whose joints can be at any angles. `after` is called at the end. Raises RobotError if
+    no way leads to a goal.
     """
 
     def __init__(

@@ -132,8 +132,8 @@ class BodySensors:
     def inertial(self) -> dict[str, float]:
         """The inertial unit's angles [rad], rates [rad/s] and accelerations [m/s^2] by NAOqi's names.
 
-        In the torso's axes, X is forward, Y left, Z up. AngleX is roll, AngleY pitch, AngleZ the angle turned left since
-        the start. At rest, the accelerometer measures the floor's upward force: Z is 9.81.
+        In the torso's axes, X is forward, Y left, Z up. AngleX is roll, AngleY pitch, AngleZ the angle turned left
+        since the start. At rest, the accelerometer measures the floor's upward force: Z is 9.81.
         """
         forward, left, up = self._world.up
         turning, pushed = (self.gyro[0], self.gyro[1], self.turning), self._world.acceleration

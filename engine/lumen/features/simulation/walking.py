@@ -104,8 +104,8 @@ class WalkController:
     def begin(self, command: Walk | Move, now: float) -> "WalkActivity":
         """Begin a walk and return its activity.
 
-        If a walk at a velocity is in progress, a new velocity changes that walk. Raises RobotError, and moves nothing, if
-        the walk must not begin.
+        If a walk at a velocity is in progress, a new velocity changes that walk. Raises RobotError, and moves nothing,
+        if the walk must not begin.
         """
         way = way_of(command)
         if isinstance(way, Velocity) and self._walking and self._walking.steer(way, now):

@@ -1,4 +1,4 @@
-"""Posts of social media."""
+"""Social media posts."""
 
 from lumen.feature import Feature, ModuleRow
 

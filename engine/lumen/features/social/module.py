@@ -1,4 +1,4 @@
-"""The stand-in for social media: each post becomes a line in a file."""
+"""A stand-in for social media, which writes each post as a line of a file."""
 
 import json
 import os
@@ -19,20 +19,20 @@ from lumen.upkeep.own_folders import private_folder
 
 POSTS_FILE = "posts.jsonl"
 MAX_FILE_BYTES = 10_000_000
-"""The largest size of the file [bytes]; beyond it nothing more is written until the file is moved away."""
+"""The file size [bytes] above which no post is written until the file is moved away."""
 
 
 class Social(Module):
     """Accepts posts from `lumen.NAO.social.expression`, and confirms them on `.perception`.
 
-    `file` gets a line of JSON for each; None keeps nothing. A real module in its place would post them.
+    Each post is written to `file` as a line of JSON; None keeps nothing. A real module would publish the posts instead.
     """
 
     name = SOCIAL
 
     @classmethod
     def make(cls, project: Project, bus: Bus, tell: Callable[[str], None], folder: Path | None) -> Self:
-        """Make the module with its file in `folder`, or without a file if that is None."""
+        """Make the module with its file in `folder`, or without a file if `folder` is None."""
         return cls(project, bus, tell, folder and folder / POSTS_FILE)
 
     def __init__(self, project: Project, bus: Bus, tell: Callable[[str], None], file: Path | None) -> None:
@@ -40,7 +40,7 @@ class Social(Module):
         self._file = file
 
     def hears(self) -> Mapping[str, MessageHandler]:
-        """Return the handlers of the routes that the module listens to."""
+        """Return the message handlers by route."""
         return {"social_expression": self._post, "forgotten": self._forget}
 
     def _post(self, message: Message) -> None:
@@ -55,7 +55,7 @@ class Social(Module):
         self.well()
 
     def _forget(self, message: Message) -> None:
-        """Delete the posts about a person to forget."""
+        """Delete the posts that name a forgotten person."""
         match message.body:
             case {"name": str(name)} if self._file:
                 forget_lines(self._file, PersonName(name))

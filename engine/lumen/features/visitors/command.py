@@ -55,7 +55,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """List or forget; return the exit code. Raises UsageError if there is no database."""
+    """List the stored data or forget a visitor; return the exit code. Raises UsageError if nothing can be listed."""
     root = shown_project(options.project)
     folder = home_of(root, one_robot(root, options.robot_name))
     if options.what == "forget":
@@ -71,7 +71,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _list(options: argparse.Namespace, store: Store, file: Path) -> int:
-    """Print the rows. Raises ModuleError if the database is unusable."""
+    """Print the visitors or entries, and return 0. Raises ModuleError if the database is unusable."""
     rows = (
         store.visitors()
         if options.what == "visitors"
@@ -106,7 +106,7 @@ def _forget(options: argparse.Namespace, root: Path, folder: Path) -> int:
 
 
 def _tell_running(options: argparse.Namespace, settings: Settings | None, found: Forgetting) -> str:
-    """Let the running exhibition forget the visitor too; return the address of its broker, or an empty text."""
+    """Let the running exhibition forget the visitor too; return the broker's address, empty without a broker."""
     try:
         reached = reach_exhibition(options.project, options.bus, options.robot_name)
     except BusUnreachableError as error:
@@ -122,7 +122,7 @@ def _tell_running(options: argparse.Namespace, settings: Settings | None, found:
 
 
 def _request(bus: Bus, settings: Settings, name: str, found: Forgetting) -> None:
-    """Send the request to the running memory, which notifies the other modules; without one, notify them here."""
+    """Send the request to the running memory, which notifies the other modules; without memory, notify them here."""
     try:
         answer = next(
             send_request(
@@ -180,5 +180,5 @@ def _when(moment: object) -> str:
 
 
 def _plain(text: str) -> str:
-    """Return the text with characters that control a terminal replaced."""
+    """Return the text with unprintable characters, which could control a terminal, replaced."""
     return "".join(sign if sign.isprintable() else "\N{REPLACEMENT CHARACTER}" for sign in text)

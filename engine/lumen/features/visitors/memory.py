@@ -1,4 +1,4 @@
-"""Writes a journal of the bus's messages, remembers visitors by their names, and answers questions about both."""
+"""Writes a journal of the bus's messages, remembers visitors by name, and answers requests about both."""
 
 import time
 from collections import deque
@@ -19,28 +19,28 @@ from lumen.run.forgetting.files import attempt
 from lumen.run.module import DAY, KEEP_DAYS, Module
 
 DATABASE_FILE = "memory.db"
-"""The name of the database's file in the home of an exhibition."""
+"""The name of the database file in an exhibition's home."""
 MAX_PENDING_ENTRIES = 10_000
-"""The most entries that may wait for an unwritable database; beyond it the oldest are dropped."""
+"""The maximum number of entries that wait for an unwritable database; beyond it, the oldest are dropped."""
 RETRY_INTERVAL = 1.0
-"""The time between two attempts to write to an unwritable database [s]."""
+"""The time after which writing to an unwritable database is tried again [s]."""
 EXPIRY_INTERVAL = 3_600.0
-"""The time between two deletions of old entries [s]."""
+"""The minimum time between two deletions of old entries [s]."""
 SENSES = ("joint", "sonar", "tactile", "battery")
 
 
 class Memory(Module):
-    """The database module. Without a `file` it keeps everything in this process; `clock` gives the time [s since 1970].
+    """The database module. Without a `file`, data is kept in this process; `clock` returns the time [s since 1970].
 
-    The kinds of entries are `heard`, `said`, `state`, `visitor`, `recognised`, `gender`, `fact`, a sense's name, or a
-    kind of other modules' entries on the route `journal`.
+    An entry's kind is `heard`, `said`, `state`, `visitor`, `recognised`, `gender`, `fact`, a sense's name, or the kind
+    given by another module on the route `journal`.
     """
 
     name = MEMORY
 
     @classmethod
     def make(cls, project: Project, bus: Bus, tell: Callable[[str], None], folder: Path | None) -> Self:
-        """Make the module with its database in `folder`, or without a file if that is None."""
+        """Make the module with its database in `folder`, or without a file if `folder` is None."""
         return cls(project, bus, tell, folder and folder / DATABASE_FILE)
 
     def __init__(
@@ -60,7 +60,7 @@ class Memory(Module):
         self._owed: dict[str, str] = {}
 
     def hears(self) -> Mapping[str, MessageHandler]:
-        """Return the handlers of the routes that the module listens to."""
+        """Return the message handlers by route."""
         heard: dict[str, MessageHandler] = {
             "state": self._state,
             "heard": lambda m: self._note("heard", m.body, "result"),
@@ -96,7 +96,7 @@ class Memory(Module):
         self._store.close()
 
     def _settle(self) -> None:
-        """Write and delete what could not be written or deleted before."""
+        """Write waiting visits and entries, and retry failed deletions. Raises ModuleError if that fails."""
         self._write()
         for name in list(self._owed.values()):
             self._delete(name)
@@ -115,10 +115,10 @@ class Memory(Module):
     def _note(
         self, kind: str, body: Any, text: str, data: Mapping[str, Any] | None = None, *, theirs: bool = True
     ) -> None:
-        """Note an entry; `text` is the field of the body with its main text.
+        """Add an entry to be written; `text` names the body's field with the main text.
 
-        Entries that are not about the visitor (not `theirs`), such as the robot's senses, are also noted during the
-        visit of a forgotten visitor.
+        Entries that name a forgotten visitor are left out. During a forgotten visitor's visit, so are all entries about
+        the visitor (`theirs`); others, such as sensor readings, are added without a name.
         """
         rest = {k: v for k, v in body.items() if k != text} if data is None else data
         self._live(spoken=theirs and kind != "state")
@@ -132,10 +132,7 @@ class Memory(Module):
         self._visit.live(self._clock(), self._earlier, spoken=spoken)
 
     def _earlier(self) -> JournalEnd:
-        """Return the end of an earlier run's journal.
-
-        It is empty if the database is unreadable, which the next write reports.
-        """
+        """Return the end of an earlier run's journal; empty if the database is unreadable, as the next write reports."""
         try:
             return self._store.end()
         except ModuleError:
@@ -158,7 +155,7 @@ class Memory(Module):
                     self._note("state", {"text": ", ".join(entered)}, "text", data)
 
     def _sample(self, sense: str, message: Message) -> None:
-        """Note a sense's reading, at most once in the configured time (`sample`) [s]."""
+        """Record a sense's reading if the configured time `sample` [s] has passed since the last one."""
         now, every = self._clock(), float(self.settings.options["sample"])
         if now - self._sampled.get(sense, 0.0) >= every:
             self._sampled[sense] = now
@@ -195,13 +192,13 @@ class Memory(Module):
         return {**counted, "others": list(found.others)} if found.others else counted
 
     def _unlearn(self, message: Message) -> None:
-        """Forget a visitor on request of this module or of a program that deletes files."""
+        """Forget a visitor at the request of this module or of a program that deletes files."""
         match message.body:
             case {"name": str(name)} if name_key(name):
                 self._delete(name)
 
     def _delete(self, name: str) -> Forgotten:
-        """Forget a visitor now; if that fails (ModuleError), as soon as the database can be written."""
+        """Forget a visitor now; if that raises ModuleError, try again when the database can be written."""
         self._owed[name_key(name)] = name
         if self._visit.is_with(name):
             self._visit.forget(name)
@@ -215,7 +212,7 @@ class Memory(Module):
         return found
 
     def _asked(self, message: Message) -> None:
-        """Note an entry of another module, or answer its question for entries."""
+        """Record another module's entry, or answer its request for entries."""
         body = message.body if isinstance(message.body, dict) else {}
         if body.get("method") != "read":
             data = {k: v for k, v in body.items() if k not in ("method", "kind", "text")}
@@ -228,7 +225,7 @@ class Memory(Module):
     def _answer(self, message: Message, work: Callable[[], Mapping[str, Any]]) -> None:
         """Write all earlier entries, do the work, and reply with the result.
 
-        Errors are also reported to the operator.
+        If a step raises ModuleError, reply with the reason and raise the error again.
         """
         try:
             self._write()
@@ -240,13 +237,13 @@ class Memory(Module):
 
 
 def _check_name(name: str, method: str) -> None:
-    """Raise ModuleError if the name is empty or has no letters to find it by."""
+    """Raise ModuleError if the name is empty or has only spaces and invisible characters."""
     if not name_key(name):
         raise ModuleError(f"`{method}` takes a `name`")
 
 
 def forget_in_database(folder: Path, name: str, found: Forgetting) -> None:
-    """Forget a visitor in the database of a home, and note visitors whose names only contain that name."""
+    """Forget a visitor in a home's database; add the counts and other visitors whose names contain it to `found`."""
 
     def work() -> None:
         store = Store(file)

@@ -18,7 +18,7 @@ from lumen.upkeep.own_folders import private_folder
 LOCK_TIMEOUT = 0.5
 """The longest wait for a locked database [s]."""
 MAX_ROWS = 1_000
-"""The most rows of one answer."""
+"""The maximum number of rows in one answer."""
 
 _VISITOR = "name, first, last, visits, data"
 _ENTRY = "id, time, date, robot, visit, visitor, kind, text, data"
@@ -35,33 +35,33 @@ class JournalEntry(NamedTuple):
     """The time [s since 1970]."""
     robot: str
     visitor: str
-    """The visitor's name, empty if it is unknown."""
+    """The visitor's name; empty if unknown."""
     kind: str
     """The kind of entry."""
     text: str
     data: Mapping[str, Any] = {}
     visit: int = 0
-    """The same number for all entries of one visit, 0 if unknown."""
+    """The visit's number, which all its entries share; 0 if unknown."""
 
 
 class Forgotten(NamedTuple):
-    """The amount of data about a person that was deleted."""
+    """The counts of a person's deleted data."""
 
     visitors: int
-    """The number of visitors."""
+    """The number of deleted visitors."""
     entries: int
-    """The number of entries of the journal."""
+    """The number of deleted journal entries."""
     visits: frozenset[int] = frozenset()
-    """The visits that these entries belong to."""
+    """The numbers of the visits to which the deleted entries belonged."""
     others: tuple[str, ...] = ()
     """Names of other visitors that contain the name, as `Ana Maria` contains `Ana`."""
 
 
 class Store:
-    """The database in `file`; without one, in this process's own memory.
+    """The database in `file`, or in this process's memory if `file` is None.
 
-    Errors of SQLite become a ModuleError of one line, and the next call tries again. Deleted data is overwritten. It
-    may be used only by the thread that uses it first.
+    SQLite's errors become one-line ModuleErrors, and the next call tries again. Deleted data is overwritten. Only the
+    thread that first uses the store can use it.
     """
 
     def __init__(self, file: Path | None) -> None:
@@ -70,7 +70,7 @@ class Store:
         self._unclean = False
 
     def add(self, entries: Sequence[JournalEntry]) -> None:
-        """Write all of the entries. Raises ModuleError if that fails; then none of them is written."""
+        """Write all entries. Raises ModuleError, and writes no entry, if that fails."""
         rows = [
             (
                 *(
@@ -91,7 +91,7 @@ class Store:
         self._do(lambda db: db.executemany(sql, rows))
 
     def met(self, name: str, now: float, data: Mapping[str, Any] | None = None) -> None:
-        """Store a visit, at `now` [s since 1970], of the person with that name; add `data` to the person's data."""
+        """Count a visit of the person with this name at `now` [s since 1970]; add `data` to the person's data."""
         name = _sound(name)
         known = self.visitor(name)
         known_data = _json({**(known["data"] if known else {}), **(data or {})})
@@ -111,11 +111,10 @@ class Store:
         return [_visitor(row) for row in self._do(lambda db: db.execute(sql, (MAX_ROWS,)).fetchall())]
 
     def journal(self, *, since: float = 0.0, visitor: str = "", limit: int = 100) -> list[dict[str, Any]]:
-        """Return the newest entries since a time [s since 1970], in the order of time.
+        """Return the newest entries since a time [s since 1970], the oldest of them first.
 
-        There are at most `limit` of them, and at most `MAX_ROWS`.
-
-        With a `visitor`, only entries of their visits are returned.
+        At most `limit` entries are returned, and at most `MAX_ROWS`. With a `visitor`, only entries of their visits are
+        returned.
         """
         sql = f"""SELECT {_ENTRY} FROM journal WHERE time >= :since AND (:key = '' OR key = :key OR visit IN
             (SELECT visit FROM journal WHERE key = :key AND visit > 0)) ORDER BY time DESC, id DESC LIMIT :limit"""
@@ -124,16 +123,16 @@ class Store:
         return [{**dict(row), "data": json.loads(row["data"])} for row in reversed(found)]
 
     def end(self) -> JournalEnd:
-        """Return the last visit in the journal, with its newest entry; an empty one if there is no visit."""
+        """Return the journal's last visit, with the time of its newest entry; `JournalEnd()` without visits."""
         sql = "SELECT visit, time, visitor FROM journal WHERE visit > 0 ORDER BY id DESC LIMIT 1"
         rows = self._do(lambda db: db.execute(sql).fetchall())
         return JournalEnd(*rows[0]) if rows else JournalEnd()
 
     def forget(self, name: str) -> Forgotten:
-        """Delete everything about a person: their row, their whole visits, and all entries that name them.
+        """Delete everything about a person: their row, their whole visits, and all entries and data that name them.
 
-        A visit is theirs if the behaviour knew their name in it, or if only their face was recognised in it. Raises
-        ModuleError also if the deleted data stays readable in the file because another program has it open.
+        A visit is theirs if the behaviour knew their name, or if it knew no name and their face was recognised. Raises
+        ModuleError on failure, and if another program has the file open, which keeps the deleted data readable in it.
         """
         found: Forgotten = self._do(lambda db: _delete(db, name_key(name)))
         self._unclean = True
@@ -141,10 +140,7 @@ class Store:
         return found
 
     def expire(self, before: float) -> int:
-        """Delete entries older than that time [s since 1970], and visitors not seen since.
-
-        Return the number of deleted rows.
-        """
+        """Delete entries before a time [s since 1970] and visitors not seen since; return the number of deleted rows."""
         sql = (("DELETE FROM journal WHERE time < ?"), ("DELETE FROM visitors WHERE last < ?"))
         gone = int(self._do(lambda db: sum(db.execute(one, (before,)).rowcount for one in sql)))
         self._unclean = self._unclean or gone > 0
@@ -217,7 +213,7 @@ class Store:
 
 
 def _delete(db: sqlite3.Connection, key: str) -> Forgotten:
-    """Delete what `Store.forget` deletes of the person with that key."""
+    """Delete the data of the person with this key, as `Store.forget` describes; return the counts."""
     known = {row["key"]: row["name"] for row in db.execute("SELECT key, name FROM visitors").fetchall()}
     alone = PersonName(key)
     others = {other: known[other] for other in known if other != key and alone.is_named_in(other)}

@@ -1,14 +1,14 @@
-"""The tables of the database, and the upgrade of those of an earlier version."""
+"""The database's tables, and their upgrade from an earlier version."""
 
 import sqlite3
 
 from lumen.language.people import name_key
 
 VERSION = 2
-"""The version of the tables; version 1 had no keys of names and no numbers of visits."""
+"""The version of the tables; version 1 had no name keys and no visit numbers."""
 
 NEWER_TABLES = "tables of version"
-"""The beginning of the error for tables of a newer Lumen."""
+"""The beginning of the error message for a newer Lumen's tables."""
 
 _TABLES = """
 CREATE TABLE IF NOT EXISTS journal (
@@ -31,9 +31,9 @@ _NOW = {"journal": _FIRST["journal"] | {"key", "visit"}, "visitors": _FIRST["vis
 
 
 def check(db: sqlite3.Connection) -> None:
-    """Raise sqlite3.OperationalError if tables of these names belong to another program or a newer Lumen.
+    """Raise sqlite3.OperationalError if tables with these names belong to another program or a newer Lumen.
 
-    Nothing is written.
+    This writes nothing.
     """
     if (written := db.execute("PRAGMA user_version").fetchone()[0]) > VERSION:
         raise sqlite3.OperationalError(f"{NEWER_TABLES} {written}")
@@ -43,7 +43,7 @@ def check(db: sqlite3.Connection) -> None:
 
 
 def prepare(db: sqlite3.Connection) -> None:
-    """Create the tables, or upgrade those of the first version, completely or (sqlite3.Error) not at all."""
+    """Create missing tables, or upgrade version 1 completely. Raises sqlite3.Error, without an upgrade, on failure."""
     if _columns(db, "visitors") == _FIRST["visitors"]:
         with db:
             db.execute("BEGIN IMMEDIATE")
@@ -53,7 +53,7 @@ def prepare(db: sqlite3.Connection) -> None:
 
 
 def _bring_up(db: sqlite3.Connection) -> None:
-    """Upgrade version 1: merge visitors whose names have the same key; older entries belong to no known visit."""
+    """Upgrade version 1: merge visitors whose names have the same key, and assign older entries to no visit (0)."""
     db.create_function("name_key", 1, name_key)
     db.execute("ALTER TABLE journal ADD COLUMN key TEXT NOT NULL DEFAULT ''")
     db.execute("ALTER TABLE journal ADD COLUMN visit INTEGER NOT NULL DEFAULT 0")

@@ -1,4 +1,4 @@
-"""The present visit, from its beginning, before a name is known, to its end."""
+"""The present visit, including the time before the visitor's name is known."""
 
 from collections.abc import Callable
 from typing import Any, NamedTuple
@@ -21,10 +21,10 @@ class JournalEnd(NamedTuple):
 
 
 class Visit:
-    """The present visit: its `number`, and the `visitor`, whose name is empty while it is unknown.
+    """The present visit, with its `number` and the `visitor`'s name, which is empty while unknown.
 
-    A visit ends when the behaviour forgets the name or learns another one; without a name, after a silence. After a
-    visitor is forgotten during the visit, nothing more is noted until it ends.
+    A visit ends when the behaviour forgets the name or learns another one. A visit without a name ends after a silence.
+    If the visitor is forgotten during the visit, nothing more about them is recorded until the visit ends.
     """
 
     def __init__(self) -> None:
@@ -34,10 +34,10 @@ class Visit:
         self._muted = False
 
     def live(self, now: float, earlier: Callable[[], JournalEnd], *, spoken: bool) -> None:
-        """Note an entry at `now` [s since 1970]; after a silence, it ends the visit of a visitor without a name.
+        """Record that an entry was made at `now` [s since 1970]; after a silence, first end a visit without a name.
 
-        `spoken` means that the entry is about the visitor. `earlier` returns the end of an earlier run's journal, and
-        is called once.
+        `spoken` means that the entry is about the visitor. `earlier` returns the end of an earlier run's journal; only
+        the first call uses it.
         """
         if not self.number:
             end = earlier()
@@ -49,10 +49,9 @@ class Visit:
             self._spoke, self._begun = now, True
 
     def meet(self, name: str, *, stepped: bool) -> bool:
-        """Note the name that the behaviour knows now; return whether it is a new one to be noted in the journal.
+        """Record the name in the behaviour's context; return True if it is a new name for the journal.
 
-        If the name vanished without a step of the behaviour (`stepped`), the visitor has not left: the name was
-        removed.
+        If the name vanished without a step of the behaviour (`stepped`), it was only removed: the visit continues.
         """
         left, self._met = stepped or not self._met, True
         if name_key(name) == name_key(self.visitor):
@@ -66,21 +65,21 @@ class Visit:
         return bool(name)
 
     def forget(self, name: str) -> None:
-        """Forget the present visitor if they have, or get, that name."""
+        """Forget the present visitor if they have this name now, or get it during the visit."""
         self._unwanted.append(PersonName(name))
         self._muted = self._muted or self.is_with(name)
 
     def is_with(self, name: str) -> bool:
-        """Return whether the visitor has that name."""
+        """Return True if the visitor has this name; False if the visitor's name is unknown."""
         return bool(self.visitor) and name_key(self.visitor) == name_key(name)
 
     @property
     def muted(self) -> bool:
-        """Whether the visit belongs to a forgotten visitor."""
+        """True if the visit belongs to a forgotten visitor."""
         return self._muted
 
     def names_unwanted(self, *said: Any) -> bool:
-        """Return whether the values name a visitor who was forgotten during this visit."""
+        """Return True if the values name a visitor who was forgotten during this visit."""
         return any(person.is_in(list(said)) for person in self._unwanted)
 
     def _end(self) -> None:

@@ -1,4 +1,4 @@
-"""A voice for texts on the bus."""
+"""Text to speech for the bus and for the simulated robot."""
 
 from lumen.feature import Feature, ModuleRow
 

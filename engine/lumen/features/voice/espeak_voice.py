@@ -12,9 +12,9 @@ from lumen.run.sound import Sound
 
 INSTALL_VOICE = "pip install 'lumen-robot[voice]', or install the package espeak-ng"
 WORDS_PER_MINUTE = 175
-"""The default pace of speech."""
+"""The default pace of speech [words per minute]."""
 MAX_TEXT_CHARACTERS = 1_000
-"""The most characters of a text that are spoken; the rest is left out."""
+"""The maximum number of characters of a text that are spoken; the rest is left out."""
 
 _SYNCHRONOUS, _DONT_EXIT, _UTF8, _CHARACTERS, _RATE = 2, 0x8000, 1, 1, 1
 
@@ -22,7 +22,7 @@ _LIST_END, _WORD = 0, 1
 
 
 class _Event(ctypes.Structure):
-    """`espeak_EVENT`: `position` is a character of the text, counted from 1, `audio` a time in its sound [ms]."""
+    """`espeak_EVENT`: `position` is a character's number in the text, from 1, and `audio` a time in the sound [ms]."""
 
     _fields_ = (
         ("type", ctypes.c_int), ("id", ctypes.c_uint), ("position", ctypes.c_int), ("length", ctypes.c_int),
@@ -34,9 +34,9 @@ _Callback = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.POINTER(ctypes.c_short), ctype
 
 
 class Espeak:
-    """The library, of which a process has one, returned by `espeak()`.
+    """The espeak-ng library. `espeak()` returns the only instance of a process.
 
-    Any thread may use it. Raises ModuleError if it or its data can't be loaded.
+    Any thread can use the instance. Raises ModuleError if the library or its data can't be loaded.
     """
 
     def __init__(self, library: str, data: str | None) -> None:
@@ -58,16 +58,16 @@ class Espeak:
         ]  # fmt: skip
 
     def speak(self, text: str, language: str = "en", pace: int = WORDS_PER_MINUTE) -> Sound:
-        """Return the text as sound in that language, at `pace` words per minute.
+        """Return the text as sound in this language, at `pace` words per minute.
 
-        Raises ModuleError if there is no voice for the language.
+        Raises ModuleError if espeak-ng has no voice for the language or can't speak the text.
         """
         return self.timed(text, language, pace)[0]
 
     def timed(
         self, text: str, language: str = "en", pace: int = WORDS_PER_MINUTE
     ) -> tuple[Sound, tuple[WordTime, ...]]:
-        """Return the sound, and the times at which words begin if the voice reports them.
+        """Return the text's sound and the times at which its words begin, empty if the voice does not report them.
 
         Raises ModuleError as `speak` does.
         """
@@ -96,7 +96,7 @@ class Espeak:
 
 @cache
 def espeak() -> Espeak:
-    """Return the library of the package `espeakng-loader`, else of this system. Raises ModuleError without either."""
+    """Return the package `espeakng-loader`'s library, else the system's. Raises ModuleError if neither exists."""
     try:
         import espeakng_loader
     except ImportError:

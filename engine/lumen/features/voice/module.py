@@ -1,4 +1,4 @@
-"""Text to speech with espeak-ng: the text-to-speech module on the bus."""
+"""The text-to-speech module on the bus, which uses espeak-ng."""
 
 import time
 from collections.abc import Callable, Mapping
@@ -22,7 +22,7 @@ class Voice(Module):
         self._espeak = espeak()
 
     def hears(self) -> Mapping[str, MessageHandler]:
-        """Return the handler of texts."""
+        """Return the handler for texts, by route."""
         return {"text_stream": self._text}
 
     def _text(self, message: Message) -> None:

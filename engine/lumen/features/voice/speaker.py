@@ -1,4 +1,4 @@
-"""`--voice espeak`: the simulated robot's texts as sound, in a file or on a device."""
+"""`--voice espeak`: the simulated robot's spoken texts, in a file or on an audio device."""
 
 import logging
 import subprocess
@@ -20,10 +20,10 @@ _log = logging.getLogger(__name__)
 
 
 class Speaker:
-    """A voice of the simulated robot: each text takes as long as its sound.
+    """The simulated robot's voice; each text takes as long as its sound.
 
-    With a `file` it writes the sound of the whole run, each text at its simulated time; otherwise the machine's own
-    player plays it. The sound is also added to `heard`, if given. Texts in languages that espeak-ng lacks are spoken in
+    With a `file`, the whole run's sound is written there, each text at its simulated time. Otherwise, the machine's
+    own player plays each text. The sound is also added to `heard`, if given. Texts in languages that espeak-ng lacks are spoken in
     `language`. Raises ModuleError if espeak-ng is missing.
     """
 
@@ -40,11 +40,11 @@ class Speaker:
 
     @property
     def mute(self) -> bool:
-        """Whether the sound goes nowhere: neither to a file nor to a player."""
+        """True if the sound is neither written to a file nor played."""
         return self._file is None and self._player is None
 
     def begin(self, text: str, language: str, volume: float, now: float) -> float:
-        """Begin to speak a text at `now` [s]; return its duration [s]."""
+        """Begin to speak a text at `now` [s] with a `volume` from 0 to 1; return the duration [s]."""
         try:
             sound, self.words = self._espeak.timed(text, language or self._language)
         except ModuleError:
@@ -57,7 +57,7 @@ class Speaker:
         return sound.duration
 
     def end(self, now: float) -> None:
-        """End the text at `now` [s], or cut it off there."""
+        """End the present text, or cut it off, at `now` [s]; do nothing without a text."""
         if self._saying is None:
             return
         (sound, began), self._saying = self._saying, None
@@ -68,7 +68,7 @@ class Speaker:
             self._append(sound.until(now - began), began)
 
     def close(self) -> None:
-        """Write the file. Raises ModuleError if that fails."""
+        """End the present text and write the file, if any. Raises ModuleError if writing fails."""
         if self._saying:
             self.end(self._saying[1] + self._saying[0].duration)
         self._hush()

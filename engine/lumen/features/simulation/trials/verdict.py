@@ -136,7 +136,7 @@ class _Judge:
         return f"{'play' if plural else 'plays'} this {self._case.way}"
 
     def _keys(self, at: float, joints: Collection[str]) -> NodePath:
-        """Return the path of the keyframe to which the robot was moving at `at` [s], if possible one of these joints.
+        """Return the path of the keyframe to which the robot was moving at `at` [s], if possible of one of `joints`.
 
         For a style of life, return the path of the sway that moves the legs fastest, or, without legs, all joints. The
         path is empty if there is no keyframe or sway.
