@@ -26,7 +26,7 @@ ROBOT_CAMERA = "robot"
 
 
 class VideoSource:
-    """The frames of a webcam, given by its number, or of a video file in `root`. Raises ModuleError if neither opens."""
+    """The frames of a webcam, given by number, or of a video file in `root`. Raises ModuleError if opening fails."""
 
     def __init__(self, camera: int | str, root: Path) -> None:
         cv2 = self._cv2 = opencv()

@@ -8,7 +8,7 @@ INSTALL_EYES = "pip install 'lumen-robot[eyes]'"
 
 
 def opencv() -> ModuleType:
-    """Return the module `cv2`. Raises ModuleError if it can't be imported or lacks a class or module that the eyes use."""
+    """Return the module `cv2`. Raises ModuleError if it can't be imported or lacks a feature that the eyes use."""
     try:
         import cv2
     except ImportError as error:

@@ -38,7 +38,7 @@ class WindowServer(ThreadingHTTPServer):
         self.address = f"http://{self._hosts[0]}/{self._token}/"
 
     def refusal(self, path: str, hosts: list[str]) -> int:
-        """Return the HTTP status for a refusal: 421 for a foreign host, 404 for another path; 0 to answer the request."""
+        """Return the HTTP status for a refusal: 421 for a foreign host, 404 for another path; 0 for no refusal."""
         if len(hosts) != 1 or hosts[0].strip().lower() not in self._hosts:
             return 421
         token = path.removeprefix("/").removesuffix("/").encode("utf-8", "replace")

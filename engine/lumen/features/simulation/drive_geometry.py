@@ -11,7 +11,7 @@ from lumen.features.simulation.world import World
 from lumen.motion.gait.pendulum import GRAVITY
 
 TIPPING_SHARE = 0.25
-"""The share that the robot uses of the maximum acceleration, which its motors reach without tipping it over."""
+"""The share that the robot uses of its maximum acceleration, which tipping or the motors' force limits."""
 
 ON_THE_GROUND = 0.01
 """The height above the wheels' lowest points up to which geoms carry the robot [m]."""

@@ -122,7 +122,7 @@ def _tell_running(options: argparse.Namespace, settings: Settings | None, found:
 
 
 def _request(bus: Bus, settings: Settings, name: str, found: Forgetting) -> None:
-    """Send the request to the running memory, which notifies the other modules; without memory, notify them here."""
+    """Send the request to the running memory, which notifies the other modules; without an answer, notify them here."""
     try:
         answer = next(
             send_request(

@@ -132,7 +132,7 @@ class Memory(Module):
         self._visit.live(self._clock(), self._earlier, spoken=spoken)
 
     def _earlier(self) -> JournalEnd:
-        """Return the end of an earlier run's journal; empty if the database is unreadable, as the next write reports."""
+        """Return the end of an earlier run's journal; empty if the database is unreadable (the next write fails)."""
         try:
             return self._store.end()
         except ModuleError:

@@ -1,4 +1,4 @@
-"""The journal and the visitors in an SQLite file that only its owner may read."""
+"""The journal and the visitors in an SQLite file that only its owner can read."""
 
 import json
 import os
@@ -140,7 +140,7 @@ class Store:
         return found
 
     def expire(self, before: float) -> int:
-        """Delete entries before a time [s since 1970] and visitors not seen since; return the number of deleted rows."""
+        """Delete entries before a time [s since 1970] and visitors not seen since; return the number of rows."""
         sql = (("DELETE FROM journal WHERE time < ?"), ("DELETE FROM visitors WHERE last < ?"))
         gone = int(self._do(lambda db: sum(db.execute(one, (before,)).rowcount for one in sql)))
         self._unclean = self._unclean or gone > 0

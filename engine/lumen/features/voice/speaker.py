@@ -23,8 +23,8 @@ class Speaker:
     """The simulated robot's voice; each text takes as long as its sound.
 
     With a `file`, the whole run's sound is written there, each text at its simulated time. Otherwise, the machine's
-    own player plays each text. The sound is also added to `heard`, if given. Texts in languages that espeak-ng lacks are spoken in
-    `language`. Raises ModuleError if espeak-ng is missing.
+    own player plays each text. The sound is also added to `heard`, if given. Texts in languages that espeak-ng lacks
+    are spoken in `language`. Raises ModuleError if espeak-ng is missing.
     """
 
     def __init__(self, language: str, file: Path | None, heard: AudioTrack | None = None) -> None:

@@ -13,13 +13,13 @@ POLL_INTERVAL = 0.02
 """The time between two samples of the robot's state [s]."""
 
 STUCK_AFTER = 60.0
-"""The time by which a command may exceed its motion before it counts as stuck [s]."""
+"""The time by which a command can exceed its motion before the command counts as stuck [s]."""
 
 REST_BEFORE, REST_AFTER = 0.3, 0.5
 """The durations of the robot's rest before and after the motion [s]."""
 
 RETRIED_AFTER = 1.5
-"""The time by which a passage may exceed its motion before it counts as tried again [s]."""
+"""The time by which a passage can exceed its motion before the passage counts as retried [s]."""
 
 LEANING_TILT, FALLING_TILT = 15.0, 30.0
 """The tilts of the torso at which a fall begins, and beyond which problems are consequences of the fall [degrees]."""
