@@ -1,4 +1,4 @@
-"""Finds faces and people in pictures, with the models in OpenCV's own package."""
+"""Finds faces and people in pictures with the models that OpenCV's package includes."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 FACE_CASCADE = "haarcascade_frontalface_alt.xml"
 """R. Lienhart's stump-based Haar cascade: of the package's cascades, its box fits a face most tightly."""
 SEARCH_WIDTH = 320
-"""The width to which pictures are scaled [px]: a face at 2 m is then 22 px wide, and detection takes 50 ms."""
+"""The width to which pictures are scaled [px]: at this width, a face at 2 m is 22 px wide, and detection takes 50 ms."""
 SCALE_STEP, MIN_NEIGHBOURS, MIN_FACE_SIZE = 1.05, 3, 20
 """The cascade's scale factor, the number of overlapping hits that make a face, and the smallest face size [px]."""
 RIM_WIDTH = 30
@@ -82,7 +82,7 @@ class PersonDetector:
         return _sorted([box for box, weight in zip(found, weights, strict=True) if weight > MIN_PERSON_WEIGHT], zoom)
 
     def _small(self, grey: "Grey") -> tuple[Any, float]:
-        """Return the picture scaled to the search width, and the factor back to the original."""
+        """Return the picture scaled to the search width, and the factor that converts its pixels to the original's."""
         height, width = grey.shape
         if width == SEARCH_WIDTH:
             return grey, 1.0

@@ -70,11 +70,11 @@ PEOPLE_INTERVAL = 1.0
 NAME_INTERVAL = 2.0
 """The minimum time between two messages with the same recognised name, while the face stays visible [s]."""
 NEW_VISITOR_GAP = 1.0
-"""The time without a face after which the next one is a new visitor's [s]."""
+"""The time without a face after which the next face counts as a new visitor's [s]."""
 UNKNOWN, UNRECOGNISED, FAILED = "unknown", "face unrecognized", "error cvException"
 """The names that the modules of 2015 published for a face without a name, for no face, and for an error of OpenCV."""
 FACE_WIDTH = 0.16
-"""The default width of the detector's box around an adult's face [m]."""
+"""The default real width of the detector's box around an adult's face [m]."""
 MAX_NAME_CHARACTERS = 60
 """The maximum number of characters in the name of a face."""
 

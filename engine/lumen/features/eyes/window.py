@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 PART_BOUNDARY = "frame"
 FACE_COLOUR, PERSON_COLOUR, TEXT_COLOUR = (0, 200, 0), (200, 120, 0), (255, 255, 255)
-"""Colours as blue, green, red."""
+"""Colours as (blue, green, red), from 0 to 255."""
 WAKE_INTERVAL = 1.0
 """The time between two checks for a closed window or browser while no new picture arrives [s]."""
 

@@ -91,7 +91,7 @@ class BalanceController:
         return self._trim
 
     def _bear(self) -> None:
-        """Raise the hip of the leg in the air by as much as the supporting hip sags, so that the foot lands level."""
+        """Raise the lifted leg's hip by as much as the supporting hip sags, which makes the foot land level."""
         for side, i, sign in self._rolls:
             bears = float(self.lifted is not None and self.lifted != side)
             borne = self._borne[side] = _SAG_SMOOTHING * self._borne[side] + (1 - _SAG_SMOOTHING) * bears
@@ -118,5 +118,5 @@ class BalanceController:
 
 
 def _toward(over: bool, part: float, rate: float, back: float) -> float:
-    """Return the share (0..1) of a movement against a fall, one control period later."""
+    """Return the share (0..1) of a movement against a fall after one more control period."""
     return min(1.0, part + rate * CONTROL_PERIOD) if over else max(0.0, part - CONTROL_PERIOD / back)

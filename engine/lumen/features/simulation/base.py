@@ -35,7 +35,7 @@ class BaseRequest:
     free: Callable[[str], bool]
     """A function that returns True if no command moves a joint and the motors are on."""
     hot: Callable[[], bool]
-    """A function that returns True if the motors are hot and should be spared."""
+    """A function that returns True if a motor is hot and the motors should be spared."""
 
     @property
     def body(self) -> Body:
@@ -44,7 +44,7 @@ class BaseRequest:
 
 
 class RobotBase(Protocol):
-    """A base, which walks or drives, keeps the robot upright if possible, and estimates its position."""
+    """A base, which moves the robot if it can, keeps it upright if possible, and estimates its position."""
 
     @property
     def whereabouts(self) -> Whereabouts | None:

@@ -1,4 +1,4 @@
-"""One step that catches a fall."""
+"""A single step to catch a fall."""
 
 from collections.abc import Mapping
 from math import atan2, pi, sin

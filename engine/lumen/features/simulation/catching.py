@@ -15,7 +15,7 @@ from lumen.motion.gait.swing import smooth
 BEYOND_TOES, BEYOND_HEELS = -0.01, -0.008
 """The distances of the DCM beyond the feet's front and rear edges above which a step begins [m].
 
-They are for the leg length with which the step was tuned. The robot never steps sideways, since its feet can't cross.
+They are for the leg length with which the step was tuned. A sideways fall starts no step, since feet can't cross.
 """
 
 ASIDE = 0.008
@@ -92,7 +92,7 @@ class FallCatcher:
         )
 
     def _measured(self) -> dict[str, float]:
-        """Return the measured angles of the legs' joints [rad]."""
+        """Return the legs' measured joint angles [rad]."""
         angles, index = self._sensors.angles, self._motors.index
         return {name: float(angles[index[name]]) for name in self._names}
 
@@ -138,7 +138,7 @@ class FallCatcher:
             self._legs = {name: angle + part * (end[name] - angle) for name, angle in self._landed.items()}
 
     def _follow(self, now: float) -> None:
-        """Bring the feet together, as at the end of a walk."""
+        """Bring the feet together, as at the end of a walk, then resume the walk or return the legs to their goals."""
         assert self._gait
         walks, self._balance.walking = self._balance.walking, True
         tick = self._gait.tick(self._measured(), self._sensors.heading)

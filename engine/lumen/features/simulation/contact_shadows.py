@@ -1,4 +1,4 @@
-"""Soft dark spots under feet: the darkness beneath a shoe, which a shadow map is too coarse to show."""
+"""Soft dark spots under feet: contact shadows, which a shadow map is too coarse to show."""
 
 from collections.abc import Iterator, Mapping
 

@@ -59,7 +59,7 @@ class Drive:
         self._wanted = speed, turning
 
     def turn_wheels(self) -> None:
-        """Move the speeds towards the requested ones and send them to the motors."""
+        """Move the speeds towards the requested speeds and send them to the motors."""
         geometry, most = self.geometry, self.limit
         (speed, turning), self._wanted = self._wanted, (0.0, 0.0)
         self.speed = _toward(self.speed, min(max(speed, -most.x), most.x), geometry.acceleration)
@@ -125,7 +125,7 @@ class DriveActivity:
 
 
 class DriveOn(DriveActivity):
-    """A drive at a constant speed, which `change` can alter on the way."""
+    """A drive at a constant velocity, which `change` can alter on the way."""
 
     def __init__(self, drive: Drive, odometry: WheelOdometry, hazards: Hazards, wanted: Velocity, now: float) -> None:
         super().__init__(drive, odometry, hazards, now)
@@ -146,7 +146,7 @@ class DriveOn(DriveActivity):
 class DriveTo(DriveActivity):
     """A drive to a place: turn towards it, drive there, and turn to the goal's heading.
 
-    The robot drives backwards to a near place behind it.
+    The robot drives backwards to a nearby place behind it.
     """
 
     def __init__(self, drive: Drive, odometry: WheelOdometry, hazards: Hazards, goal: Pose, now: float) -> None:

@@ -128,7 +128,7 @@ class Nao(legacy_base.Walker):  # type: ignore[misc]  # dm_control has no types
 
     @property
     def observable_joints(self) -> list[mjcf.Element]:
-        """The joints of `joints_pos` and `joints_vel`: all of them."""
+        """All joints, as observed by `joints_pos` and `joints_vel`."""
         return self.joints
 
     @property
@@ -141,12 +141,12 @@ class Nao(legacy_base.Walker):  # type: ignore[misc]  # dm_control has no types
 
     @property
     def root_body(self) -> mjcf.Element:
-        """The torso."""
+        """The torso's link."""
         return self._mjcf_root.find("body", self.body.roles.torso)
 
     @property
     def end_effectors(self) -> list[mjcf.Element]:
-        """The hands and feet."""
+        """The links of the hands and feet."""
         roles = self.body.roles
         ends = [
             list(limbs[side].values())[-1].joint

@@ -112,12 +112,12 @@ class FallingSense:
 
     @property
     def ahead(self) -> float:
-        """The distance of the centre of mass in front of the ankles [m]."""
+        """The distance of the centre of mass in front of the ankles [m]; negative behind them."""
         return self._ahead
 
     @property
     def behind_heels(self) -> float:
-        """The distance of the DCM behind the rear edge of the feet [m]; negative above or in front of them."""
+        """The distance of the DCM behind the feet's rear edge [m]; negative in front of the edge."""
         return -self._sole[1] - max(self._left[0], self._right[0])
 
     @property
@@ -139,7 +139,7 @@ class FallingSense:
         return hypot(*self._left), hypot(*self._right)
 
     def feel(self) -> None:
-        """Update the estimate; call it once in each control period."""
+        """Update the estimate; call this once in each control period."""
         x, y, z = self._sensors.up
         level = hypot(y, z)
         self.axes = np.array(((level, -x * y / level, -x * z / level), (0.0, z / level, -y / level), (x, y, z)))

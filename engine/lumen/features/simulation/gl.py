@@ -34,9 +34,9 @@ def choose() -> str:
 
 
 def _settle() -> tuple[str, str]:
-    """Choose a backend, from MUJOCO_GL if set; return it and the reason why the first choice can't draw, if any.
+    """Choose a backend, from MUJOCO_GL if set; return it, and the reason if the first choice can't draw.
 
-    If there is a reason, the backend is `disable`: only the physics works. If mujoco was already imported and MUJOCO_GL
+    With a reason, which is otherwise empty, the backend is `disable`: only the physics works. If mujoco was already imported and MUJOCO_GL
     is not set, mujoco repeats its own choice.
     """
     wanted = os.environ.get("MUJOCO_GL", "").strip().lower()

@@ -39,7 +39,7 @@ class TactileSensors:
         return {name for i, pair in at for name, site in self._sites.items() if self._in(site, i, pair)}
 
     def _in(self, site: int, contact: int, pair: list[int]) -> bool:
-        """Return True if a contact with the site's body is inside the site's box."""
+        """Return True if a contact involves the site's body and is inside the site's box."""
         if self._model.site_bodyid[site] not in self._model.geom_bodyid[pair]:
             return False
         away = self._data.contact.pos[contact] - self._data.site_xpos[site]

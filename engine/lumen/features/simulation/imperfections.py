@@ -38,7 +38,7 @@ It is Webots' value for ROBOTIS OP2, a robot of NAO's size.
 NOMINAL_VOLTAGE, FULL_VOLTAGE, EMPTY_VOLTAGE = 21.6, 25.2, 18.0
 """The voltages of NAO's battery [V]: nominal, full and empty.
 
-It has six lithium cells in series (data sheet: 21.6 V), each 4.2 V full and 3.0 V empty.
+The battery has six lithium cells in series (data sheet: 21.6 V), each 4.2 V full and 3.0 V empty.
 """
 
 

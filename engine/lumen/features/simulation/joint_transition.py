@@ -1,4 +1,4 @@
-"""A safe movement of joints from one posture to another."""
+"""A smooth movement of joints from one posture to another."""
 
 from collections.abc import Callable, Mapping
 

@@ -18,7 +18,7 @@ from lumen.language.roles import LEG_ROLES
 from lumen.motion.gait.legs import SIDE_ROLES, SIDES, LegGeometry, LegVector, Side, SoleSize, sign
 
 MEETING_TOLERANCE = 1e-3
-"""The tolerance [m] within which axes intersect, and legs are alike."""
+"""The tolerance [m] within which axes count as intersecting, and legs as alike."""
 
 STRAIGHT_TOLERANCE = 0.02
 """The tolerated deviation of an axis from its direction [rad]."""
@@ -30,7 +30,7 @@ These keep the MJCF's numbers, and drop the rounding errors of their sums.
 """
 
 TOUCHES = 0.003
-"""The height above a sole up to which points belong to it [m]."""
+"""The height above a sole up to which points belong to the sole [m]."""
 
 
 class _Leg(NamedTuple):
@@ -137,7 +137,7 @@ class _LegReader:
         )
 
     def _chained(self, names: tuple[str, ...]) -> bool:
-        """Return True if each of these joints carries the next one."""
+        """Return True if every joint in `names` carries the next."""
         order = [(int(self._model.joint(name).bodyid[0]), self._model.joint(name).id) for name in names]
         parents = self._model.body_parentid
 

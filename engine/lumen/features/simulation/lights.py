@@ -14,7 +14,7 @@ RENDERED_COLOURS: Mapping[object, int] = {
     "yellow": 0xFFE020, "orange": 0xFF8810, "cyan": 0x20E0F0, "magenta": 0xFF30D0, "purple": 0x9030FF,
     "pink": 0xFF80C0, "turquoise": 0x30E0C0, "gold": 0xFFC030, "violet": 0xA050FF,
 }  # fmt: skip
-"""The colours of lit LEDs as seen through their covers; other names and values are drawn as CSS colours."""
+"""The colours of lit LEDs as seen through their covers; other colours are drawn as in CSS."""
 
 PROPS = ("microphone",)
 """The objects that the robot can hold for show: materials of the MJCF, invisible until held."""

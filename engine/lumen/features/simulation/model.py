@@ -104,7 +104,7 @@ def load(
 
 
 def read_hall(models: Path, hall: str) -> mjcf.RootElement:
-    """Return the hall without a robot. Raises RobotError as `load` does."""
+    """Return the hall without a robot. Raises RobotError if its file is missing, invalid or incomplete."""
     world = _read(models / hall)
     _complain(hall, lacks_of_hall(world))
     return world

@@ -24,7 +24,7 @@ class Variation:
     mass: float = 1.0
     """The factor of all masses."""
     friction: float = 1.0
-    """The factor of the friction of all geoms, the ground's included."""
+    """The factor of all geoms' friction, including the ground's."""
 
 
 MAX_TIMESTEP = 0.01
@@ -59,7 +59,7 @@ def lacks_of_robot(robot: mjcf.RootElement, body: Body) -> list[str]:
 
 
 def wheel_motor(robot: mjcf.RootElement, wheel: str) -> str:
-    """Return the name of the velocity actuator that turns a wheel's joint; empty if there is no such actuator."""
+    """Return the name of the velocity actuator that turns a wheel's joint; empty without such an actuator."""
     motors = (motor for motor in robot.find_all("actuator") if motor.tag == "velocity")
     return next((motor.name for motor in motors if motor.joint is not None and motor.joint.name == wheel), "")
 

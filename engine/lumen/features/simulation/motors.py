@@ -45,7 +45,7 @@ class MotorTorques:
 
 
 LIMP_STIFFNESS = 0.5
-"""The stiffness below which a joint may be far from its goal."""
+"""The stiffness below which a joint counts as limp and can be far from its goal."""
 
 
 class Motors:
@@ -122,18 +122,18 @@ class Motors:
     def held_back(self, name: str) -> float:
         """Return the distance of a joint from the angle sent to its servo [rad].
 
-        If it is large, the joint is blocked or too weak.
+        A large distance means that the joint is blocked or too weak.
         """
         i = self.index[name]
         return abs(self._world.angles.item(i) - self.command.item(i))
 
     def sway(self, offsets: Mapping[str, float]) -> None:
-        """Add these angles [rad] to the joints' goals in the next period only."""
+        """Add these angles [rad] to the joints' goals in the next control period only."""
         for name, angle in offsets.items():
             self._sway[self.index[name]] += angle
 
     def hold(self, angles: Mapping[str, float]) -> None:
-        """Replace these joints' goals [rad] in the next period only."""
+        """Replace these joints' goals [rad] in the next control period only."""
         self._held = {self.index[name]: angle for name, angle in angles.items()}
 
     def stiffen(self, stiffness: float, names: Collection[str] | None = None) -> None:

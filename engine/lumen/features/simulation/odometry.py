@@ -52,7 +52,7 @@ class Odometry:
         self.doubt = self._reckoning.slid = max(self.doubt, self._before + drift_after(posture))
 
     def stumble(self, heading: float) -> None:
-        """Set the heading of both feet [rad] after steps that caught a fall, during which the feet may have slid."""
+        """Turn the feet to this heading [rad] after steps that caught a fall; widen the estimate, as feet may slide."""
         between = middle(self.feet)
         right = Pose(between.x, between.y, heading)
         self.land({side: right.then(foot.seen_from(between)) for side, foot in self.feet.items()})
@@ -80,7 +80,7 @@ class Odometry:
         self._believe(middle(feet))
 
     def land(self, feet: Feet) -> None:
-        """Set the feet, which stand, and with them the estimate."""
+        """Set the estimate to these standing feet."""
         self.feet = feet
         self._believe(middle(feet))
 

@@ -35,11 +35,11 @@ class PostureState:
     """The robot's posture, or the passage between two postures at which it stopped."""
 
     posture: str
-    """The posture that the robot is in, or that it left last."""
+    """The robot's present posture, or the posture that it left last."""
     standing: Collection[str]
     """The postures in which the robot stands, on both feet if it has them."""
     passage: MotionDefinition | None = None
-    """The passage that was interrupted; None if the robot is in a posture."""
+    """The interrupted passage; None if the robot is in a posture."""
     reached: float = 0.0
     """The time reached in the interrupted passage [s]."""
 
@@ -93,7 +93,7 @@ class PosturePlanner:
     def advance(self, now: float) -> bool:
         """Continue until `now` [s]; return True at the end.
 
-        Raises RobotFailedError if the robot can't reach the posture.
+        Raises RobotFailedError if the robot did not reach the posture.
         """
         if self._step is not None and not self._step.advance(now):
             return False

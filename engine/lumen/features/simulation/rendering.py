@@ -156,7 +156,7 @@ class _Canvas:
     def draw(
         self, scene: RenderState, camera: str | mujoco.MjvCamera, field_of_view: float | None = None
     ) -> PixelArray:
-        """Return the image of `scene` through `camera`."""
+        """Return the image of `scene` through `camera`; `field_of_view` is a free camera's vertical angle [deg]."""
         model, data = self._model, self._data
         if field_of_view is not None:
             model.vis.global_.fovy = field_of_view

@@ -85,14 +85,14 @@ class AimController:
         self._aims: dict[str, tuple[float, float]] = {}
 
     def aim(self, aim: Aim) -> None:
-        """Begin to move these joints, each at the share `aim.speed` of its maximum speed."""
+        """Begin to move the joints of `aim`, each at the share `aim.speed` of its maximum speed."""
         speeds = self._motors.envelope.speed
         for name, angle in aim.angles.items():
             speed = float(speeds[self._motors.index[name]]) * aim.speed
             self._aims[name] = angle, speed
 
     def advance(self, dt: float, free: Callable[[str], bool]) -> None:
-        """Advance by `dt` [s]; a joint's aim ends when its goal reaches it, or if `free` is False for the joint."""
+        """Advance by `dt` [s]. A joint's aim ends when it is reached, or when `free` returns False for the joint."""
         moved = {}
         for name, (angle, speed) in list(self._aims.items()):
             if not free(name):
@@ -242,7 +242,7 @@ class SimulatedRobot(ExecutingRobot):
             self._life.led(aim.angles, self.time)
 
     def poll(self) -> Sequence[Event]:
-        """Return the events since the last call."""
+        """Return the events since the last call, in order; empty if nothing happened."""
         events, self._events = self._events, []
         return events
 

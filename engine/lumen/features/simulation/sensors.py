@@ -64,7 +64,7 @@ class GyroCalibration:
         self._next = 0
 
     def feel(self, rates: NDArray[np.float64], *, at_rest: bool) -> None:
-        """Update the bias with a period's readings [rad/s]; `at_rest` means that nothing moves the robot on purpose."""
+        """Update the bias with one period's rates [rad/s]; `at_rest` means that nothing moves the robot on purpose."""
         self._told[self._next] = rates if at_rest else np.inf
         self._next = (self._next + 1) % REST
         if at_rest and max((np.maximum.reduce(self._told) - np.minimum.reduce(self._told)).tolist()) < REST_SPREAD:

@@ -22,7 +22,7 @@ from lumen.run.setup import RobotRequest, Setup
 
 
 class HallRobot(NamedTuple):
-    """One of the robots in a hall."""
+    """The settings of one robot in a shared hall."""
 
     body: Body
     models: Path

@@ -27,9 +27,9 @@ IMPERFECTIONS = tuple(field.name for field in fields(Imperfections))
 
 
 def only(names: tuple[str, ...]) -> Imperfections:
-    """Return a robot's imperfections with only these switched on."""
+    """Return imperfections with only these switched on."""
     return Imperfections(**{name: name in names for name in IMPERFECTIONS})
 
 
 PERFECT = only(())
-"""No imperfections: the robot as its model describes it."""
+"""No imperfections: the robot exactly as modelled."""

@@ -28,7 +28,7 @@ SEGMENTS, BLEND_STEPS = 28, 3
 class Loft:
     """A skin around sections along z, or along x with `axis="x"`.
 
-    With `axis="x"`, the x coordinate of a ring becomes -z, and its y stays y.
+    With `axis="x"`, a ring's x coordinate becomes -z, and its y coordinate stays y.
     """
 
     sections: Sequence[CrossSection]

@@ -1,4 +1,4 @@
-"""The duration of the simulated robot's speech and sounds, and the interfaces of a real voice and a player."""
+"""The interfaces of the simulated robot's voice and sound player, and their silent versions."""
 
 from collections.abc import Callable
 from typing import Protocol

@@ -1,4 +1,4 @@
-"""A simulated robot that is measured while it moves, and variants of it with other masses, friction and noise."""
+"""A simulated robot that is measured while it moves, and its variants with other masses, friction and noise."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -27,7 +27,7 @@ MASS_RANGE, FRICTION_RANGE, USUAL_FRICTION = (0.9, 1.1), (0.5, 1.0), 0.8
 
 
 class ExaminedRobot(SimulatedRobot):
-    """A simulated robot that reports how hard its motion strains it."""
+    """A simulated robot that reports the strain of its motion."""
 
     def strain(self) -> Strain:
         """Return the motion's progress, the tilt, self-contacts, sole loads, exhausted motors and late joints."""

@@ -125,10 +125,10 @@ class WalkController:
         return self._walking
 
     def pace(self, way: Pose | Velocity, now: GaitParameters | None = None) -> GaitParameters:
-        """Return the gentle pace if motors are hot, the brisk one for velocities that need it, else the usual one.
+        """Return the gentle pace if motors are hot, the brisk pace for velocities that need it, else the usual pace.
 
-        A walk to a place is never brisk, so that it ends accurately. A walk that is brisk `now` stays so, because
-        frequent changes between the two make the robot stumble.
+        A walk to a place is never brisk, for an accurate end. A walk at a velocity that is brisk `now` stays brisk, because
+        frequent changes of pace make the robot stumble.
         """
         usual, gentle, brisk, _ = self._paces
         if self._hot():
@@ -209,7 +209,7 @@ class WalkActivity:
             self._gait.stop()
 
     def _go_on(self, now: float) -> bool:
-        """Continue from the feet's present places after a caught fall; return True if a cancelled walk ends there."""
+        """Continue from the feet's present poses after a caught fall; return True if a cancelled walk ends there."""
         walker, gait = self._walker, self._gait
         self._stumbled, self._landed = False, 0
         self._gait = Gait(walker.legs, walker.odometry.feet, gait.goal, walker.centre_of_mass, gait.pace)

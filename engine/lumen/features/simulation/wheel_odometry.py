@@ -1,4 +1,4 @@
-"""A wheeled robot's estimate of its position since its start, from its wheels' encoders and the gyrometer."""
+"""A wheeled robot's estimate of its position relative to its start, from wheel encoders and the gyrometer."""
 
 import numpy as np
 from numpy.typing import NDArray

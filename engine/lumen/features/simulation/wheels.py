@@ -76,12 +76,12 @@ class Wheels:
         return self._nothing
 
     def relax(self) -> None:
-        """Brake: wheels stay locked while the motors are off."""
+        """Update the odometry and brake: wheels stay locked while the motors are off."""
         self.odometry.feel(CONTROL_PERIOD)
         self.drive.halt()
 
     def lose(self, posture: str) -> None:
-        """Widen the estimate of the position if the robot has fallen."""
+        """Widen the position estimate if the robot has fallen, which an empty `posture` means."""
         if not posture:
             self.odometry.lose()
 

@@ -1,4 +1,4 @@
-"""The running physics of one robot: its state, its sensors, and the passing of time."""
+"""One robot's running physics: state, sensors and simulated time."""
 
 from collections.abc import Mapping
 from math import acos, pi
@@ -115,7 +115,7 @@ class World:
 
     @property
     def torques(self) -> JointVector:
-        """The motors' torques [N m]; 0 at a joint that shares another's motor."""
+        """The motors' torques by joint [N m]; 0 for a joint that another joint's motor moves."""
         torques = np.zeros(len(self.body.joints))
         torques[self.driven] = self.data.actuator_force[self.actuators]
         return torques

@@ -1,4 +1,4 @@
-"""The visitors that the exhibition remembers, and the journal of what happened."""
+"""The visitors that the exhibition remembers, and its journal of events."""
 
 from lumen.feature import Feature, ModuleRow, Subcommand
 

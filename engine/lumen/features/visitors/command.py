@@ -87,7 +87,7 @@ def _list(options: argparse.Namespace, store: Store, file: Path) -> int:
 
 
 def _forget(options: argparse.Namespace, root: Path, folder: Path) -> int:
-    """Return 0 if a visitor was forgotten and nothing within reach is left, else 1.
+    """Forget a visitor and print the result; return 0 if data was deleted and none within reach is left, else 1.
 
     Raises UsageError without a name.
     """

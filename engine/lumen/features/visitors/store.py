@@ -16,7 +16,7 @@ from lumen.language.people import PersonName, name_key
 from lumen.upkeep.own_folders import private_folder
 
 LOCK_TIMEOUT = 0.5
-"""The longest wait for a locked database [s]."""
+"""The maximum wait for a locked database [s]."""
 MAX_ROWS = 1_000
 """The maximum number of rows in one answer."""
 
@@ -32,7 +32,7 @@ class JournalEntry(NamedTuple):
     """A row of the journal."""
 
     time: float
-    """The time [s since 1970]."""
+    """The entry's time [s since 1970]."""
     robot: str
     visitor: str
     """The visitor's name; empty if unknown."""

@@ -52,9 +52,9 @@ class Picture(NamedTuple):
     camera: str | tuple[HallPoint, float, float, float]
     """The name of a camera of the model, or a free camera's target, azimuth [deg], elevation [deg] and distance [m]."""
     said: str
-    """The text of the robot's subtitle; empty for none."""
+    """The text of the robot's subtitle; empty for no subtitle."""
     heard: str
-    """The text of the visitor's subtitle; empty for none."""
+    """The text of the visitor's subtitle; empty for no subtitle."""
     title: float
     """The title's opacity, from 0 to 1."""
 
@@ -92,7 +92,7 @@ class Film:
 
     @property
     def frames(self) -> int:
-        """The number of frames so far."""
+        """The number of frames drawn or waiting so far."""
         return self._due
 
     @property
@@ -121,7 +121,7 @@ class Film:
         self.happened(FilmMoment.VISITOR_SPEAKS)
 
     def tick(self, now: float) -> None:
-        """Draw one picture for all frames that are due by `now` [s]; block the run if drawing can't keep up."""
+        """Draw one picture for all frames due by `now` [s], if any; block the run if drawing can't keep up."""
         if not self.frame_due(now):
             return
         world = self._robot.world

@@ -38,7 +38,7 @@ MIN_FILM_SIDE, MAX_FILM_SIDE = 64, 4096
 
 
 def configure_size(parser: argparse.ArgumentParser) -> None:
-    """Add `--size` to a command that has `--video`."""
+    """Add `--size` to the parser of a command that has `--video`."""
     usual = "x".join(map(str, FILM_SIZE))
     parser.add_argument(
         "--size", default=usual, metavar="WIDTHxHEIGHT", help=f"size of the video [px] (default: {usual})"
@@ -68,7 +68,7 @@ class FilmPlan:
     size: tuple[int, int] | None = None
     """The width and height of the picture [px]; None for the default."""
     progress: FilmProgress | None = None
-    """The progress to print on the terminal; None to print none."""
+    """The progress display for the terminal; None for no display."""
 
 
 class FilmOptions:

@@ -109,7 +109,7 @@ class FilmPart(Part, Observer):
             self._progress.tick(self._film.length)
 
     def close(self) -> None:
-        """Finish the video and add its sound."""
+        """Finish the video and add the soundtrack, if any. Raises RobotFailedError if ffmpeg fails."""
         self._film.close()
         if self._track:
             add_sound(self._path, self._track, self._film.length)

@@ -39,7 +39,7 @@ class Subjects(NamedTuple):
     torso: HallPoint
     """The position of the robot's torso in the hall [m]."""
     heading: float
-    """The direction that the robot faces [rad]."""
+    """The direction that the robot faces in the hall [rad]."""
     visitor: HallPoint | None
     """The position of the visitor's face in the hall [m]; None without a visitor."""
 
@@ -55,7 +55,7 @@ SHORTEST_SHOT, LONGEST_SHOT = 2.5, 9.0
 """A shot's minimum duration, and the time after which it changes without an event if a visitor is present [s]."""
 
 FIELD_OF_VIEW = 36.0
-"""The vertical angle of view [deg]: that of a long lens, without visible distortion."""
+"""The vertical angle of view [deg], of a long lens without visible distortion."""
 
 HEAD_ROOM, CLOSE_DISTANCE, FULL_DISTANCE = 0.45, 0.62, 1.75
 SIDE = radians(-32.0)

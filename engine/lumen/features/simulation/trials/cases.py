@@ -24,7 +24,7 @@ Before = tuple[RobotCommand, ...]
 
 @dataclass(frozen=True)
 class Case:
-    """A motion that is tried in simulation.
+    """A motion to play in simulation, and the commands before it.
 
     A style of life counts as a motion without keyframes.
     """
@@ -45,7 +45,7 @@ class Case:
 
     @property
     def passage(self) -> bool:
-        """True if the motion leads from posture to posture: then feet may slide, and links may touch on purpose."""
+        """True if the motion is a passage between postures, in which feet may slide and links may touch on purpose."""
         return self.folder == PASSAGES
 
     @property

@@ -52,7 +52,7 @@ class OutcomeCache:
             return {}
 
     def keep(self, case: Case, outcomes: Mapping[int, Outcome]) -> None:
-        """Keep the outcomes of a case; delete those of its earlier versions."""
+        """Keep a case's outcomes; delete the outcomes of its earlier versions. Ignore errors of the disk."""
         file = self._file(case)
         draft = file.with_suffix(f".{os.getpid()}")
         try:

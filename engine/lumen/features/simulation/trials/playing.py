@@ -128,7 +128,7 @@ def summary(rehearsals: Sequence[CaseResult]) -> str:
 
 
 def number_of_robots(text: str) -> int:
-    """Return the number in `--robots N`. Raises UsageError if it is not a number from 0 to 1000."""
+    """Return the number in `--robots N`. Raises UsageError unless it is an integer from 0 to 1000."""
     number = int(text) if text.isdecimal() and text.isascii() and len(text) < 10 else inf
     if number > 1000:
         raise UsageError(f"--robots must be a number from 0 to 1000, not `{text[:40]}`")

@@ -32,7 +32,7 @@ BEARING_FORCE = 5.0
 """The force above which a foot bears load [N]."""
 
 TimedAmount = tuple[float, float]
-"""A time from the motion's beginning [s], and a duration or amount."""
+"""A time since the motion's beginning [s], and a duration or amount."""
 
 _KINDS = ("collisions", "exhausted", "behind", "slid")
 

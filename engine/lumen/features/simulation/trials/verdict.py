@@ -110,7 +110,7 @@ class _Judge:
         limit: float,
         spared: Collection[str] = (),
     ) -> Iterator[Diagnostic]:
-        """Report the largest amount at its time, and the other joints or links that reach `limit`; nothing if none do."""
+        """Report the largest amount at its time, and the other joints or links that reach `limit`; else nothing."""
         tried = self._rehearsal.tried
         beyond = [
             (moment, what)
