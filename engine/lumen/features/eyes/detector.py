@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 FACE_CASCADE = "haarcascade_frontalface_alt.xml"
 """R. Lienhart's stump-based Haar cascade: of the package's cascades, its box fits a face most tightly."""
 SEARCH_WIDTH = 320
-"""The width to which pictures are scaled [px]: at this width, a face at 2 m is 22 px wide, and detection takes 50 ms."""
+"""The width to which pictures are scaled [px]: a face at 2 m is then 22 px wide, and detection takes 50 ms."""
 SCALE_STEP, MIN_NEIGHBOURS, MIN_FACE_SIZE = 1.05, 3, 20
 """The cascade's scale factor, the number of overlapping hits that make a face, and the smallest face size [px]."""
 RIM_WIDTH = 30

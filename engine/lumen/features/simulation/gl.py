@@ -34,10 +34,10 @@ def choose() -> str:
 
 
 def _settle() -> tuple[str, str]:
-    """Choose a backend, from MUJOCO_GL if set; return it, and the reason if the first choice can't draw.
+    """Choose a backend, from MUJOCO_GL if set; return it and the reason why the first choice does not work.
 
-    With a reason, which is otherwise empty, the backend is `disable`: only the physics works. If mujoco was already imported and MUJOCO_GL
-    is not set, mujoco repeats its own choice.
+    The reason is empty if the choice works; otherwise, the backend is `disable`, with which only the physics works. If
+    mujoco was already imported and MUJOCO_GL is not set, mujoco repeats its own choice.
     """
     wanted = os.environ.get("MUJOCO_GL", "").strip().lower()
     late = not wanted and sys.modules.get("mujoco.rendering.classic.gl_context")

@@ -87,7 +87,7 @@ class MotionPlayback:
         self._recovery = JointTransition(self._motors, self._home, self._now, RECOVERY_TIME)
 
     def _begun(self, now: float) -> Trajectory:
-        """Return the trajectory from the present angles. Raises BadCommandError if no delay makes the motion slow enough."""
+        """Return the trajectory from the present angles. Raises BadCommandError if no delay suffices for the joints."""
         here = self._motors.wanted(self._motion.tracks)
         self._motion, self._begin = begun_from(self._motion, self._motors.body, here), now
         self._cues = sorted(self._motion.cues, key=lambda cue: cue.time)

@@ -97,7 +97,7 @@ class ShellPanel:
 
 @dataclass(frozen=True)
 class Ring:
-    """A torus around z with a radius of 1000 mm, which the MJCF scales."""
+    """A torus around z with a radius of 1000 mm, to be scaled in the MJCF."""
 
     thick: float
     """Half the ring's radial thickness [mm]."""

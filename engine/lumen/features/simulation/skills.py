@@ -144,10 +144,10 @@ class SimulatedSkills:
                 assert_never(command)
 
     def fall(self, now: float) -> None:
-        """Make the robot limp.
+        """Make the falling robot limp and record the fall.
 
-        Unless it falls on its back, head and arms first protect the robot, until `lie` releases them. Legs would be too
-        slow to help.
+        Unless the robot falls on its back, its head and arms protect it until `lie` releases them. Legs would be too slow
+        to help.
         """
         self.fallen, self._way, self._down_at = True, None, now + PROTECTING_TIME
         self._motors.stiffen(FALLEN_STIFFNESS)

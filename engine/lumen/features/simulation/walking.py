@@ -127,8 +127,8 @@ class WalkController:
     def pace(self, way: Pose | Velocity, now: GaitParameters | None = None) -> GaitParameters:
         """Return the gentle pace if motors are hot, the brisk pace for velocities that need it, else the usual pace.
 
-        A walk to a place is never brisk, for an accurate end. A walk at a velocity that is brisk `now` stays brisk, because
-        frequent changes of pace make the robot stumble.
+        A walk to a place is never brisk, for an accurate end. A walk at a velocity that is brisk `now` stays brisk,
+        because frequent changes of pace make the robot stumble.
         """
         usual, gentle, brisk, _ = self._paces
         if self._hot():

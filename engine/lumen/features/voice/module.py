@@ -13,7 +13,7 @@ from lumen.run.module import Module
 
 
 class Voice(Module):
-    """Answers each text on `lumen.audio.text.stream` with its spoken sound. Raises ModuleError if espeak-ng is missing."""
+    """Answers each text on `lumen.audio.text.stream` with its speech. Raises ModuleError if espeak-ng is missing."""
 
     name = VOICE
 

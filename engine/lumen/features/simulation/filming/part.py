@@ -23,7 +23,7 @@ from lumen.upkeep.own_folders import private_folder
 
 
 def add_sound(film: Path, track: AudioTrack, length: float) -> None:
-    """Add the soundtrack's first `length` [s] to an MP4, as AAC; the pictures stay the same.
+    """Add `length` [s] of the soundtrack to an MP4, as AAC; the pictures stay the same.
 
     Raises RobotFailedError if ffmpeg fails.
     """
