@@ -7,7 +7,7 @@ from lumen.language.robots import Body
 from lumen.motion.limits import coupled_range
 
 JointVector = NDArray[np.float64]
-"""A value for each joint in the order of `body.joints`, Shape (joints,) [rad; hands 0..1]."""
+"""A value for each joint in the order of `body.joints`, Shape (joints,) [rad; slides m; hands 0..1]."""
 
 
 class JointEnvelope:

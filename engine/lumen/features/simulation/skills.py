@@ -146,8 +146,8 @@ class SimulatedSkills:
     def fall(self, now: float) -> None:
         """Make the falling robot limp and record the fall.
 
-        Unless the robot falls on its back, its head and arms protect it until `lie` releases them. Legs would be too slow
-        to help.
+        Unless the robot falls on its back, its head and arms protect it until `lie` releases them. Legs would be too
+        slow to help.
         """
         self.fallen, self._way, self._down_at = True, None, now + PROTECTING_TIME
         self._motors.stiffen(FALLEN_STIFFNESS)

@@ -1,4 +1,4 @@
-"""A base with two driven wheels: the robot drives instead of walking, and tips over if it is pushed hard."""
+"""A base with two driven wheels: the robot drives instead of walking, and tips over if pushed hard."""
 
 import numpy as np
 

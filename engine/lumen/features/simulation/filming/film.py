@@ -116,7 +116,7 @@ class Film:
             self.happened(FilmMoment.ROBOT_SPEAKS)
 
     def hears(self, text: str, now: float) -> None:
-        """Show the visitor's words as a subtitle from `now` [s], for as long as they take to read."""
+        """Show the visitor's words as a subtitle from `now` [s], for the time needed to read them."""
         self._heard, self._heard_until = text, now + 1.0 + 0.07 * len(text)
         self.happened(FilmMoment.VISITOR_SPEAKS)
 
