@@ -25,7 +25,7 @@ class JointEnvelope:
     def step(self, last: JointVector, goal: JointVector, dt: float) -> JointVector:
         """Return the joint angles to command `dt` [s] after `last` on the way to `goal`.
 
-        Whatever the goal, every joint stays within its limits and its maximum speed. If a joint can't follow a coupled
+        Every joint stays within its limits and its maximum speed, for any goal. If a joint can't follow a coupled
         limit in time, the joint that narrows the limit slows down or waits.
         """
         reach = self.speed * dt

@@ -55,7 +55,7 @@ class JointTransition:
         self._halt = self._now, u * u * (3 - 2 * u), 6 * u * (1 - u) / self._seconds
 
     def _come_to_rest(self, now: float, since: float, done: float, rate: float) -> bool:
-        """Slow down evenly from `rate` [1/s], starting at the share `done` of the way; return True at rest."""
+        """Slow down evenly from `rate` [1/s], starting at the share `done` of the movement; return True at rest."""
         t = min(now - since, _HALT)
         self._go(min(1.0, done + rate * t * (1 - t / (2 * _HALT))))
         return t >= _HALT

@@ -58,12 +58,12 @@ def lying(feeling: UprightSensor) -> str:
 
 
 class PosturePlanner:
-    """A way to the nearest of the postures `goals`, passage by passage, with a check of each result.
+    """A route to the nearest of the postures `goals`, passage by passage, with a check of each result.
 
-    A robot that ends on the floor begins again from there, with at most `MAX_ATTEMPTS` attempts. A cancelled way halts,
-    and the next way continues from there. `speed` is a share of the maximum. `settle` first brings the joints to the
+    A robot that ends on the floor begins again from there, with at most `MAX_ATTEMPTS` attempts. If cancelled, the robot
+    halts, and the next route continues from there. `speed` is a share of the maximum. `settle` first brings the joints to the
     present posture, for a robot whose joints can be at any angles. `after` is called at the end. Raises RobotError if
-    no way leads to a goal.
+    no route leads to a goal.
     """
 
     def __init__(
@@ -107,7 +107,7 @@ class PosturePlanner:
         return self._step is None
 
     def cancel(self) -> None:
-        """Halt; in a passage, record the time reached, from which the next way continues."""
+        """Halt; in a passage, record the time reached, from which the next route continues."""
         if isinstance(self._step, _Passing):
             self._posture_state.passage, self._posture_state.reached = self._step.motion, self._step.reached
             self._step = None

@@ -189,7 +189,7 @@ class SimulatedSkills:
     ) -> PosturePlanner:
         """Return the activity that leads to the nearest of these postures; a limp robot begins as it lies or sits.
 
-        Raises RobotRefusedError if a fallen robot is neither lying nor upright, or if no way leads to a goal.
+        Raises RobotRefusedError if a fallen robot is neither lying nor upright, or if no route leads to a goal.
         """
         limp, down = self.fallen or not self.awake, lying(self._sensors)
         if limp and down:

@@ -24,7 +24,7 @@ class SpeechPlayback(Protocol):
 
 
 class SilentPlayback:
-    """A silent voice: each text takes its usual duration."""
+    """A silent voice, which lasts as long as the text would."""
 
     words: tuple[WordTime, ...] = ()
 

@@ -23,7 +23,7 @@ STILL_RATE = 0.15
 class WheelOdometry:
     """The pose of the wheels' midpoint in the frame of the robot's start.
 
-    `stage`, in the same frame, bounds where the robot may drive.
+    `stage`, in the same frame, is the area in which the robot may drive; None for no bounds.
     """
 
     def __init__(

@@ -63,7 +63,7 @@ class World:
         roles = body.roles
         self.torso = self.model.body(f"{prefix}/{roles.torso}").id
         self.free = roles.base.row.moves
-        """True if the robot can leave the point where it was attached."""
+        """True if the robot can leave its point of attachment."""
         self._soles = [f"{prefix}/{roles.soles[side]}" for side in SIDES if side in roles.soles]
         self._root = self.model.joint(f"{prefix}/").qposadr[0] if self.free else 0
         self._accelerometer = self._sensor(roles.sensors.accelerometer)

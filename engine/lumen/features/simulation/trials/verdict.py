@@ -1,4 +1,4 @@
-"""Report problems of a simulated motion, at the keyframes where they occurred."""
+"""Report problems of a simulated motion, each at its keyframe."""
 
 from collections.abc import Callable, Collection, Iterator, Mapping
 from math import degrees
