@@ -60,10 +60,10 @@ def lying(feeling: UprightSensor) -> str:
 class PosturePlanner:
     """A route to the nearest of the postures `goals`, passage by passage, with a check of each result.
 
-    A robot that ends on the floor begins again from there, with at most `MAX_ATTEMPTS` attempts. If cancelled, the robot
-    halts, and the next route continues from there. `speed` is a share of the maximum. `settle` first brings the joints to the
-    present posture, for a robot whose joints can be at any angles. `after` is called at the end. Raises RobotError if
-    no route leads to a goal.
+    A robot that ends on the floor begins again from there, with at most `MAX_ATTEMPTS` attempts. If cancelled, the
+    robot halts, and the next route continues from there. `speed` is a share of the maximum. `settle` first brings the
+    joints to the present posture, for a robot whose joints can be at any angles. `after` is called at the end. Raises
+    RobotError if no route leads to a goal.
     """
 
     def __init__(
