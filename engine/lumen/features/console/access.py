@@ -1,4 +1,4 @@
-"""Sign-in to the pages: by a PIN, or by a session that a PIN has begun; and limits on how fast PINs may be tried."""
+"""Sign-in to the pages by PIN or session cookie, and rate limits for attempts at PINs."""
 
 import base64
 import hashlib
@@ -23,11 +23,11 @@ SESSION_TIME = 16 * 3600.0
 SHORTEST_PIN = 4
 MAX_NAME = 60
 FIRST_PAUSE, LONGEST_PAUSE = 1.0, 60.0
-"""The first pause of an address after too many wrong PINs, doubled by each further one, and its maximum [s]."""
+"""An address's first and longest pause after too many wrong PINs [s]; each further wrong PIN doubles the pause."""
 FREE_TRIES = 3
 """From this many wrong PINs on, an address must pause; fewer cause no pause, because people mistype."""
 ALL_TRIES, ALL_PERIOD = 20, 10.0
-"""All addresses together may try this many wrong PINs at once, then one per period [s]."""
+"""All addresses together may try this many wrong PINs in a burst, then one per period [s]."""
 MAX_ADDRESSES = 1_000
 SECRET_FILE = "console.key"
 _SECRET_BYTES = 32
@@ -46,8 +46,8 @@ class Access:
 
     Without any PIN everyone is an author, which is allowed on loopback only.
 
-    Sessions are signed with a `secret`, so that they outlive the console's process; those that were ended are not
-    accepted.
+    Sessions are signed with `secret`, so they remain valid after the console restarts. An empty secret is replaced by
+    a random one, which does not outlive the process.
     """
 
     def __init__(self, pins: Mapping[Role, str], secret: bytes = b"") -> None:
@@ -57,9 +57,9 @@ class Access:
         self._ended: OrderedDict[str, float] = OrderedDict()
 
     def person(self, address: str, bearer: str, cookie: str) -> Person:
-        """Return the person who sends a request: by the PIN in `bearer`, else by the session in `cookie`.
+        """Return the person who sends a request, identified by the PIN in `bearer`, else by the session in `cookie`.
 
-        If that is wrong or missing, the role is `NOBODY`.
+        The role is `NOBODY` if the PIN or session is invalid, and `AUTHOR` if the console has no PINs.
 
         Raises TooFastError if PINs are tried too fast.
         """
@@ -72,7 +72,7 @@ class Access:
     def role(self, address: str, pin: str) -> Role:
         """Return the role of a PIN, `NOBODY` for a wrong one.
 
-        Raises TooFastError, without checking the PIN, if it comes too soon.
+        Raises TooFastError, without checking the PIN, if the attempt comes too soon.
         """
         self._guard.check(address)
         given, found = pin.encode("utf-8", "surrogatepass"), Role.NOBODY
@@ -83,13 +83,13 @@ class Access:
         return found
 
     def sign(self, person: Person) -> str:
-        """Return a new session of that person, valid for `SESSION_TIME`, as the value of a cookie."""
+        """Return the cookie value of a person's new session, which is valid for `SESSION_TIME`."""
         said = [person.role.word, person.name[:MAX_NAME], time.time() + SESSION_TIME, secrets.token_hex(8)]
         body = base64.urlsafe_b64encode(json.dumps(said).encode()).decode()
         return f"{body}.{self._mark(body)}"
 
     def end(self, cookie: str) -> None:
-        """End the session of a cookie: it is not accepted again."""
+        """Refuse the session in this cookie until the process ends."""
         self._ended[cookie] = time.time()
         while len(self._ended) > MAX_ADDRESSES:
             self._ended.popitem(last=False)
@@ -103,14 +103,14 @@ class Access:
         return Person(known, name) if time.time() < until and known in self.pins else Person(Role.NOBODY)
 
     def _mark(self, body: str) -> str:
-        pins = b"\0".join(_digest(pin) for _, pin in sorted(self.pins.items()))  # a changed PIN ends its sessions
+        pins = b"\0".join(_digest(pin) for _, pin in sorted(self.pins.items()))  # any changed PIN ends all sessions
         return hmac.new(self._secret, body.encode("utf-8", "surrogatepass") + pins, hashlib.sha256).hexdigest()
 
 
 class PinGuard:
     """Limits attempts at PINs.
 
-    There is a pause for each address, which grows with the wrong PINs from it, and a limit for all addresses.
+    An address must pause for longer after each wrong PIN, and all addresses share one limit.
     """
 
     def __init__(self) -> None:
@@ -128,7 +128,7 @@ class PinGuard:
             raise TooFastError(left)
 
     def note(self, address: str, *, right: bool) -> None:
-        """Record an attempt of an address; if the PIN was `right`, the wrong ones of that address are cleared."""
+        """Record an attempt from an address. A `right` PIN clears the address's count of wrong ones."""
         if right:
             self._wrong.pop(address, None)
             return
@@ -139,7 +139,7 @@ class PinGuard:
 
 
 def pins_from(said: Mapping[str, str], environment: Mapping[str, str]) -> dict[Role, str]:
-    """Return the PINs from environment variables, by role; `said` has the variable for each role's word.
+    """Return each role's PIN from the environment; `said` maps the role's word to its variable.
 
     Raises UsageError if a PIN is missing, too short or used twice.
     """
@@ -159,9 +159,9 @@ def pins_from(said: Mapping[str, str], environment: Mapping[str, str]) -> dict[R
 
 
 def secret_in(root: Path) -> bytes:
-    """Return the key that signs sessions, from the home of the project; a new one is stored there if there is none.
+    """Return the key that signs sessions from the project's home folder; create it if it is missing or invalid.
 
-    It is empty if it cannot be stored.
+    Return empty bytes if the folder is missing or the key can't be written.
     """
     home = Home(home_of(root))
     try:

@@ -1,4 +1,4 @@
-"""The console's connection to a bus, opened again whenever it is lost, in a thread that blocks no other."""
+"""The console's connection to a bus, opened and restored in its own thread."""
 
 import logging
 import threading
@@ -21,13 +21,11 @@ _log = logging.getLogger(__name__)
 
 
 class BusLink:
-    """Holds a bus open from `start` to `close`.
+    """Keeps a bus open from `start` to `close`; `reached` is None while it is not open.
 
-    `reached` is the bus, or None; `trouble` is the reason while it accepts no messages.
-
-    On each bus it subscribes to `patterns`. `heard` receives their messages, `answered` those on the key for
-    answers, `returned` the keys of messages that no process receives; all on threads of the bus. `changed` is called
-    when the bus becomes available or is lost.
+    `patterns` returns the keys to subscribe to on each bus. `heard` receives their messages, and `answered` those on
+    the key for answers. `returned` receives the key of each message that no process receives. The bus calls these
+    three on its threads. `changed` is called when the bus becomes available or is lost.
     """
 
     def __init__(
@@ -95,13 +93,13 @@ class BusLink:
         bus = reached.bus
         bus.subscribe(OPERATOR_ANSWERS, self._answered)
         for pattern in self._patterns(reached):
-            with suppress(BusError):  # what a broker does not let us read is not shown
+            with suppress(BusError):  # data that the broker does not let us read is not shown
                 bus.subscribe(pattern, self._heard)
         if returning := bus.ability(ReturningBus):
             returning.returns(self._returned)
 
     def _watch(self, bus: Bus) -> None:
-        """Return once the bus is lost for good or the link closes; a broker that is away reconnects by itself."""
+        """Wait until the bus ends or the link closes, and report each loss and return of the broker."""
         ends, was = bus.ability(EndsWithExhibition), self.up
         while not self._ending.wait(LOOK_PERIOD) and not (ends and ends.gone.is_set()):
             if self.up is not was:

@@ -16,7 +16,7 @@ BOUNDARY = "lumen-frame"
 MEDIA_TYPE = f"multipart/x-mixed-replace; boundary={BOUNDARY}"
 JPEG = "data:image/jpeg;base64,"
 MAX_IMAGE = 4_000_000
-"""The most characters that an image on the bus may have."""
+"""The maximum length of an image on the bus [characters]."""
 PERIOD = 1 / 15
 """The shortest time between two images of a stream [s]."""
 SILENCE = 10.0
@@ -24,11 +24,11 @@ SILENCE = 10.0
 FRESH = 2.0
 """The greatest age of a still image [s]."""
 LINGER = 2.0
-"""The subscription stays for this long after the last viewer left [s]."""
+"""The subscription remains for this long after the last viewer has left [s]."""
 
 
 class WatchedCamera:
-    """The newest image of one robot: `frame` is its JPEG data, at first empty; `count` is the number so far."""
+    """The newest image of one robot: `frame` is its JPEG data, empty before the first of `count` images."""
 
     def __init__(self) -> None:
         self.frame, self.count, self.lookers = b"", 0, 0
@@ -39,7 +39,7 @@ class WatchedCamera:
         self._undo: Callable[[], None] | None = None
 
     async def listen(self, bus: Bus, key: str) -> None:
-        """Subscribe to the images on a bus. Raises BusError if it can't be reached."""
+        """Subscribe to the images on a bus. Raises BusError if the bus can't be reached."""
         self.bus = bus
         self._undo = await asyncio.to_thread(bus.subscribe, key, self._take)
 
@@ -78,8 +78,9 @@ class Cameras:
         return robot in self._cameras and self._cameras[robot].bus is not None
 
     async def stream(self, robot: str) -> AsyncIterator[bytes]:
-        """Yield the newest images as parts of one multipart answer; end after SILENCE [s] without an image, or when the
-        console closes.
+        """Yield the newest images as parts of a multipart response.
+
+        The stream ends after SILENCE [s] without an image, or when the console closes.
         """
         camera = self._cameras.setdefault(robot, WatchedCamera())
         camera.lookers += 1
@@ -103,8 +104,9 @@ class Cameras:
             self._looked(camera)
 
     async def still(self, robot: str) -> bytes:
-        """Return the newest image, empty if there is none or it is older than FRESH. The subscription stays for LINGER
-        [s].
+        """Return the newest image, empty if there is none or it is older than FRESH [s].
+
+        The subscription remains for LINGER [s], so a later call can return an image.
         """
         camera = self._cameras.setdefault(robot, WatchedCamera())
         camera.lookers += 1
@@ -115,7 +117,7 @@ class Cameras:
         return camera.frame if time.monotonic() - camera.at < FRESH else b""
 
     async def _listen(self, robot: str, camera: WatchedCamera) -> None:
-        """Subscribe to the images on the present bus, if there is one, unless that is done already."""
+        """Subscribe to the images on the current bus, if any, unless already subscribed; ignore an unreachable bus."""
         bus = self._watch.link.bus
         if bus is None or bus is camera.bus:
             return
@@ -123,7 +125,7 @@ class Cameras:
             await camera.listen(bus, self._watch.keys.of(robot).image)
 
     def _looked(self, camera: WatchedCamera) -> None:
-        """Remove one viewer, and end the subscription after a while if it was the last one."""
+        """Remove one viewer; if it was the last one, end the subscription after LINGER [s]."""
         camera.lookers -= 1
         camera.wanted = time.monotonic()
         asyncio.get_running_loop().call_later(LINGER, self._leave, camera)
@@ -135,7 +137,7 @@ class Cameras:
 
 
 def jpeg_in(body: Any) -> bytes | None:
-    """Return the JPEG data in a message; None if it has none, or too much."""
+    """Return the JPEG data in a message; None if it is missing, malformed or longer than MAX_IMAGE."""
     url = body.get("contentUrl") if isinstance(body, dict) else None
     if not isinstance(url, str) or not url.startswith(JPEG) or len(url) > MAX_IMAGE:
         return None

@@ -34,9 +34,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Serve the console until a signal ends it, and return 0.
+    """Serve the console until a signal ends it or, with `--beside`, its parent process ends; return 0.
 
-    It survives the end of an exhibition, and connects to the next one.
+    The console outlives an exhibition, and connects to the next one.
     """
     demand("console", "`lumen console`", "starlette", "uvicorn")
     give_back()
@@ -57,7 +57,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _end_with_parent(end: Callable[[], None]) -> None:
-    """Call `end` when the parent process is gone, which closes its end of our standard input."""
+    """Call `end` after standard input closes, which happens when the parent process ends."""
     while sys.stdin.buffer.read(1024):
         pass
     end()

@@ -1,4 +1,4 @@
-"""Commands from pages: each id is sent once, however often it arrives, and followed until its outcome is known."""
+"""Commands from pages, each sent only once per id and followed until its outcome is known."""
 
 import asyncio
 import time
@@ -21,9 +21,9 @@ from lumen.run.presence import ROBOT_PART
 from lumen.run.resting import STOP_TIMEOUT, no_robot, stop_behavior
 
 SENT_TIMEOUT = 0.8
-"""A message that the bus does not have after this long counts as not sent [s]."""
+"""A message that the bus has not accepted after this long counts as unsent [s]."""
 REST_TTL = 5.0
-"""The time to live of a command to rest [s], that of the route `stop`."""
+"""The time to live of a command to rest [s], equal to that of the route `stop`."""
 LOOK_PERIOD = 0.02
 """The time between two checks for the presence of a robot that must rest [s]."""
 PRESENCE_PATIENCE = 1.5
@@ -33,7 +33,7 @@ FINISHED, FAILED, UNSENT, SENT = "finished", "failed", "unsent", "sent"
 
 
 class PageCommand:
-    """One command: `sent` is set once it is known whether the bus has it, `over` once its outcome is known."""
+    """One command: `sent` is set when the bus has accepted or refused it, `over` when its outcome is known."""
 
     def __init__(self, id: str, robot: str, command: str, by: str) -> None:
         self.id, self.robot, self.command, self.by = id, robot, command, by
@@ -49,7 +49,7 @@ class PageCommand:
             self.over.set()
 
     def to_json(self) -> dict[str, Any]:
-        """Return the answer to the page that sent it; `seconds` [s] is from its arrival to its state."""
+        """Return the answer to the sending page; `seconds` is the time from the command's arrival to its state."""
         return {"id": self.id, "state": self.state, "seconds": self.seconds, "reason": self.reason, **self.more}
 
     def block(self) -> bytes:
@@ -59,7 +59,7 @@ class PageCommand:
 
 
 class Commands:
-    """Sends the commands of all pages over one watch; `streams` show them on all pages."""
+    """Sends the commands of all pages over one watch, and reports them to all pages through `streams`."""
 
     def __init__(self, watch: Watch, streams: Streams) -> None:
         self._watch, self._streams = watch, streams
@@ -67,9 +67,9 @@ class Commands:
         self._tasks = set[asyncio.Task[None]]()
 
     def send(self, id: str, robot: str, command: str, fields: Fields, person: Person) -> PageCommand:
-        """Send a command to a robot, or with `ALL` to all, and return it.
+        """Start sending a command to a robot, or to all robots if `robot` is ALL, and return it.
 
-        If the id is known, its command is returned and nothing is sent.
+        If the id is known, return its earlier command and send nothing.
 
         Raises UsageError if the command is malformed.
         """
@@ -99,7 +99,10 @@ class Commands:
         self._streams.tell(one.block())
 
     async def _all(self, one: PageCommand, orders: list[tuple[str, Order]]) -> None:
-        """Follow a command to several robots: it is sent or finished once all are; `robots` has the state of each."""
+        """Send a command to several robots. It counts as sent or finished when all have that state.
+
+        In its answer, `robots` has each robot's result.
+        """
         each = [PageCommand(one.id, name, one.command, one.by) for name, _ in orders]
         for part, (name, order) in zip(each, orders, strict=True):
             self._begin(self._one(part, name, order))
@@ -146,7 +149,7 @@ class Commands:
                 self._stop_behavior(robot)
 
     async def _robot_answers(self, exchange: Exchange, view: KnownRobot | None) -> None:
-        """Return when there is an answer. Raises BusUnreachableError if the robot's process has ended."""
+        """Wait for an answer. Raises BusUnreachableError if the robot's process has ended."""
         sent = time.monotonic()
         while exchange.answers.empty():
             if view and view.lacks(ROBOT_PART) and time.monotonic() - sent > PRESENCE_PATIENCE:
@@ -162,15 +165,12 @@ class Commands:
         )
 
     def _note(self, robot: str, text: str, by: str) -> None:
-        """Write a note with the sender's name into the journal.
-
-        This is for a command that does not pass through the behaviour.
-        """
+        """Write a note with the sender's name into the journal, for a command that bypasses the behaviour."""
         if bus := self._watch.link.bus:
             with suppress(BusError):
                 bus.publish(self._watch.keys.of(robot).operator, NOTE(text=text, by=by))
 
     def _stop_behavior(self, robot: str) -> None:
-        """Inform the behaviour of the stop, because the robot cannot."""
+        """Report the stop to the behaviour in place of the robot, which did not answer."""
         if bus := self._watch.link.bus:
             stop_behavior(bus, robot)

@@ -1,4 +1,4 @@
-"""The connections of the console's server, so that clients that never read can be cut off."""
+"""The open connections of the console's server, kept to cut off clients that stop reading."""
 
 import asyncio
 from typing import Any, cast
@@ -14,7 +14,7 @@ _open: dict[tuple[str, int], asyncio.Transport] = {}
 
 
 class KnownConnection(H11Protocol):
-    """A connection that `cut_off` finds by the address of its client."""
+    """A connection that `cut_off` can find by its client's address."""
 
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
         super().connection_made(transport)
@@ -30,6 +30,6 @@ class KnownConnection(H11Protocol):
 
 
 def cut_off(client: tuple[str, int] | None) -> None:
-    """End the connection of a client at once; unsent data is lost."""
+    """Abort a client's connection, if it is open; unsent data is lost."""
     if client and (transport := _open.get(client)):
         transport.abort()

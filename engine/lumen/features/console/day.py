@@ -22,25 +22,25 @@ from lumen.language.modules import VISITOR_KEY
 HEARD = "heard"
 MAX_TEXT = 200
 MAX_STRETCH = 1_000
-"""The most entries between two visits that form one stretch."""
+"""The maximum length of a stretch between two visits [entries]."""
 MAX_ROWS = 1_000
-"""The most rows of one kind in the JSON."""
+"""The maximum number of rows per list in the JSON."""
 
 
 @dataclass
 class DayVisit:
-    """A visit of a day."""
+    """A visit to the robot on one day."""
 
     number: int
-    """Its number on that day, from 1."""
+    """The visit's number on that day, from 1."""
     first: int
-    """The position of its first entry in the journal."""
+    """The position of the visit's first entry in the journal."""
     last: int
-    """The position of its last entry so far."""
+    """The position of the last entry so far."""
     began: float
-    """The time of its first entry [s since 1970]."""
+    """The time of the first entry [s since 1970]."""
     ended: float
-    """The time of its last entry [s since 1970]."""
+    """The time of the last entry so far [s since 1970]."""
     visitor: str = ""
     """The visitor's name, empty if unknown."""
     language: str = ""
@@ -48,7 +48,7 @@ class DayVisit:
     asked: int = 0
     """The number of sentences that were heard."""
     missed: int = 0
-    """The number of these that were not understood, or had no answer."""
+    """The number of heard sentences that were not understood, or had no answer."""
 
     def to_json(self) -> dict[str, Any]:
         seconds = round(self.ended - self.began, 1)
@@ -67,9 +67,9 @@ class AwaitedAnswer(NamedTuple):
     """The question."""
     language: str
     heard: str
-    """The visitor's sentence that led to it, in lower case."""
+    """The visitor's sentence that led to the question, in lower case; empty if unknown."""
     visit: DayVisit | None
-    """The visit in which it was asked, None outside visits."""
+    """The visit during which the question was asked; None outside visits."""
 
 
 class DayMark(NamedTuple):
@@ -107,7 +107,7 @@ class QuietStretch:
 
 @dataclass
 class Day:
-    """The visits and counts of one day, and the `dates` on which there is something to show."""
+    """The visits and statistics of one day, and the `dates` of all days that can be shown."""
 
     day: date
     dates: list[date]
@@ -125,16 +125,16 @@ class Day:
     """Questions to the knowledge without an answer, each with its language."""
     said: Counter[HeardSentence] = field(default_factory=Counter)
     rows: dict[str, list[str]] = field(default_factory=dict)
-    """The keys of the rows that a state could hear, by its behaviour and name."""
+    """The keys of the `hears` rows that each state could match, by its behaviour and name, separated by a blank."""
     asking: "dict[str, AwaitedAnswer]" = field(default_factory=dict)
-    """Questions to the knowledge that may still be answered, by the ids of their commands."""
+    """Questions to the knowledge that may still be answered, by command id."""
     hours: Counter[int] = field(default_factory=Counter)
     """The number of visits that began in each hour of the day."""
     falls: int = 0
     marks: list[DayMark] = field(default_factory=list)
 
     def to_json(self) -> dict[str, Any]:
-        """Return the object for the page; rows of `numbers` are a text and its count, the most frequent first."""
+        """Return the day as JSON data; the lists in COUNTED are pairs of text and count, the most frequent first."""
         lengths = [visit.ended - visit.began for visit in self.visits]
         numbers: dict[str, Any] = {
             "visits": len(lengths),
@@ -163,9 +163,9 @@ COUNTED = ("asked", "missed", "answers", "languages")
 
 
 def day_of(entries: Iterable[RecordedEntry], machines: MachineSource, wanted: date | None) -> Day:
-    """Return the day `wanted` from the entries of a journal, by the exhibition's clock.
+    """Return the day `wanted` from a journal's entries, by the exhibition's clock; it is empty if it has none.
 
-    None means the last day with visits, or the last with entries if there are no visits.
+    None means the last day with visits, else the last with entries, else today.
     """
     clock, watch, replayer = JournalClock(), VisitWatch(), Replayer(machines)
     days: dict[date, Day] = {}
@@ -210,7 +210,7 @@ def day_of(entries: Iterable[RecordedEntry], machines: MachineSource, wanted: da
 
 
 def _lie_between(day: Day, entry: RecordedEntry, at: float) -> None:
-    """Add an entry outside all visits to the present stretch, or begin a new one after a visit or MAX_STRETCH."""
+    """Add a visible entry to the current stretch; begin a new one after a visit or MAX_STRETCH entries."""
     if not _is_told(entry):
         return
     last = day.between[-1] if day.between else None
@@ -222,7 +222,7 @@ def _lie_between(day: Day, entry: RecordedEntry, at: float) -> None:
 
 
 def _is_told(entry: RecordedEntry) -> bool:
-    """Return True if a page shows a line for the entry; must agree with `text_of` of `entry_words`."""
+    """Return True if a page shows a line for the entry; keep this consistent with `text_of` in `entry_words`."""
     if isinstance(entry, JournalJump):
         return bool(entry.said or ENGLISH.jump(entry.kind))
     if entry.entered or entry.commands:
@@ -231,7 +231,7 @@ def _is_told(entry: RecordedEntry) -> bool:
 
 
 def _count(day: Day, visit: DayVisit | None, taken: ReplayedStep, behavior: str) -> None:
-    """Count falls, what the visitor said and whether it was understood, and what the robot said."""
+    """Count falls, the visitor's sentences, those not understood, and the robot's answers; skip redacted entries."""
     entry = taken.entry
     if not isinstance(entry, JournalInput) or entry.redacted:
         return
@@ -260,7 +260,7 @@ def _count(day: Day, visit: DayVisit | None, taken: ReplayedStep, behavior: str)
 
 
 def _ask(day: Day, visit: DayVisit | None, entry: JournalInput) -> None:
-    """Follow questions to the knowledge until they are answered. An id used again means that a new run began."""
+    """Track questions to the knowledge until they are answered; a reused id leaves its earlier one unanswered."""
     kind, _, id = entry.event.name.partition(".command.")
     data = entry.event.data if isinstance(entry.event.data, Mapping) else {}
     if kind == "answer" and not data.get("filler"):
@@ -284,10 +284,10 @@ def _unanswered(day: Day, id: str) -> None:
 
 
 def understood(entry: JournalInput, taken: ReplayedStep) -> bool:
-    """Return True if the behaviour reacted to a visitor's sentence by more than a fallback.
+    """Return True if the behaviour reacted to a visitor's sentence with more than a fallback.
 
     A fallback is the row `else` of `hears`, or a transition without a guard in a state that has another transition for
-    the same event with a guard.
+    the same event with a guard. If no transition is known, any state change or command counts as a reaction.
     """
     if taken.step is None or taken.machine is None:
         return bool(entry.entered or entry.exited or entry.commands)
@@ -313,7 +313,7 @@ def _name(visit: DayVisit, taken: ReplayedStep) -> None:
 
 
 RISKY = ("=", "+", "-", "@", "\t", "\r")
-"""Text that begins with one of these gets an apostrophe: a spreadsheet would read it as a formula."""
+"""Text that begins with one of these gets an apostrophe, because a spreadsheet would read it as a formula."""
 
 
 def day_csv(day: Day) -> str:

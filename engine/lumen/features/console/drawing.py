@@ -1,4 +1,4 @@
-"""The shapes and poses of a robot's links, from its joint angles and its project's own model."""
+"""The shapes and poses of a robot's links, computed from its joint angles and its project's model."""
 
 import math
 from collections.abc import Iterator, Mapping
@@ -18,9 +18,9 @@ DIGITS = 4
 
 
 class Drawing:
-    """Draws the robot of that name in the project in `root`; the first if it has several and the name is empty.
+    """Draws the named robot of the project in `root`, or its first robot if the name is empty.
 
-    Raises LumenError if its files have errors, or MuJoCo is not installed.
+    Raises LumenError if the project has errors or MuJoCo is not installed.
     """
 
     def __init__(self, root: Path, robot: str = "") -> None:
@@ -29,7 +29,7 @@ class Drawing:
         self._links = links_of(self._project.body, model_files(self._project)[0])
 
     def shape(self) -> dict[str, Any]:
-        """Return the links with their shapes, and the stage [m], as JSON data."""
+        """Return the links with their shapes, and the stage (null if there is none), as JSON data in metres."""
         found: dict[str, list[dict[str, Any]]] = {}
         for one in self._links.shapes():
             found.setdefault(one.link, []).append(
@@ -59,7 +59,7 @@ class Drawing:
         return dict(self._placed(joints))
 
     def _placed(self, joints: Joints) -> Iterator[tuple[str, list[float]]]:
-        """Yield the links with their poses. The frames of parents come before those of their children."""
+        """Yield each link's name and pose. The frames of parents precede those of their children."""
         known: dict[str, tuple[Any, Any]] = {}
         for frame in self._links.frames(joints):
             position, rotation = np.asarray(frame.position), np.asarray(frame.rotation)

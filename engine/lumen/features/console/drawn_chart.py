@@ -1,4 +1,4 @@
-"""The chart of the behaviour that runs, as boxes and lines: a page draws it in its colours and marks active states."""
+"""The running behaviour's chart as boxes and lines, from which a page draws it and marks active states."""
 
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -16,10 +16,10 @@ from lumen.run.replaying.journals import KeptBundles
 
 
 def chart_of(root: Path, robot: str, hash: str) -> dict[str, Any]:
-    """Return the chart of the behaviour of the bundle `hash`, or of the saved files if that bundle was not kept.
+    """Return the behaviour's chart from the bundle `hash`, or from the saved files if that bundle was not kept.
 
-    All lengths are in px. `boxes` are in the order in which they are drawn: outer ones first. Raises UsageError if that
-    bundle was not kept and the saved files have errors.
+    All lengths are in px. `boxes` are in drawing order, outer ones first. Raises UsageError if the bundle was not kept
+    and the saved files have errors.
     """
     robot = one_robot(root, robot)
     project = KeptBundles(root, robot).load(hash) or check_files(root, read_files(root, robot))[0]
@@ -41,7 +41,7 @@ def drawn(machine: MachineDefinition) -> dict[str, Any]:
 
 
 def _boxes(placed: PlacedBox, states: Mapping[str, State], depth: int) -> Iterator[dict[str, Any]]:
-    """Yield a box and those inside: `path` and `name` of its state, and where its texts begin."""
+    """Yield a box and the boxes inside it, each with its state's `path` and `name` and its texts' positions [px]."""
     box, (x, y), (width, height) = placed.box, placed.corner, placed.size
     baseline = y + TITLE_HEIGHT - 1
     state = states.get(box.id)

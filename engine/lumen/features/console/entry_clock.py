@@ -1,4 +1,4 @@
-"""The times of entries in pages of a journal: in order, but not from its beginning."""
+"""The times of entries in a page of a journal, which can begin anywhere in the journal."""
 
 import time
 from collections.abc import Mapping, Sequence
@@ -12,7 +12,7 @@ from lumen.language.numbers import is_number
 class ToldPage(NamedTuple):
     """Consecutive entries of a journal, each with its `position`.
 
-    `epoch` is the exhibition's time 0 that holds for the first entry [s since 1970], None if unknown.
+    `epoch` is the exhibition's time 0 at the first entry [s since 1970], None if unknown.
     """
 
     entries: Sequence[Mapping[str, Any]]
@@ -22,8 +22,8 @@ class ToldPage(NamedTuple):
 class EntryClock:
     """Computes the time of each entry of a page; call `of` with the entries in their order.
 
-    If the page has no `epoch`, the first entry that has one counts; if none does, the last entry is assumed to be of
-    this moment.
+    If the page has no `epoch`, the first epoch in its entries is used. If they have none, the last entry counts as
+    happening now.
     """
 
     def __init__(self, page: ToldPage) -> None:
@@ -33,7 +33,7 @@ class EntryClock:
             self._epoch = time.time() - _number(page.entries[-1].get("at"))
 
     def of(self, entry: Mapping[str, Any]) -> str:
-        """Return the time of the next entry, ISO 8601 in UTC."""
+        """Return the time of the next entry in ISO 8601 (UTC); 1970-01-01 if it is out of range."""
         told = _epoch_in(entry)
         self._epoch = told if told is not None else self._epoch or 0.0
         try:

@@ -12,9 +12,9 @@ from lumen.features.console.entry_clock import EntryClock, ToldPage
 from lumen.features.console.entry_words import told_of
 
 KEPT = 2_000
-"""The most entries in a ring."""
+"""The maximum number of entries in a ring."""
 PAGE = 200
-"""The most entries that `after` returns."""
+"""The maximum number of entries that `after` returns."""
 
 
 class EncodedEntry(NamedTuple):
@@ -27,9 +27,9 @@ class EncodedEntry(NamedTuple):
 
 
 class EntryRing:
-    """Consecutive entries of one robot. `first` is the position before the oldest that is kept.
+    """Consecutive entries of one robot: those after the position `first`, up to `last`.
 
-    `last` is the position of the newest; `run` counts how often the journal has begun anew.
+    `known` is False before the first call of `begin`; `run` counts the later calls, one for each new journal.
     """
 
     def __init__(self, robot: str) -> None:
@@ -39,7 +39,7 @@ class EntryRing:
         self._kept: deque[EncodedEntry] = deque()
 
     def begin(self, after: int) -> None:
-        """Drop all entries, and keep those after this position from now on."""
+        """Drop all entries, and accept only entries after this position from now on."""
         self.run += self.known
         self.known, self.first, self.last = True, after, after
         self._kept.clear()
@@ -55,7 +55,7 @@ class EntryRing:
         return len(new)
 
     def after(self, position: int) -> Sequence[EncodedEntry] | None:
-        """Return up to PAGE entries after a position, the oldest first; None if some after it are no longer kept."""
+        """Return up to PAGE entries after a position, the oldest first; None if some of them are no longer kept."""
         if position < self.first:
             return None
         begin = bisect_right(self._kept, position, key=lambda entry: entry.position)
@@ -67,7 +67,7 @@ class EntryRing:
         return [*islice(wanted, count)][::-1]
 
     def encoded(self, page: ToldPage) -> list[EncodedEntry]:
-        """Encode the entries of a page, each with its robot, its time (ISO 8601), a line of text and its kind."""
+        """Return a page's entries as JSON, each with its robot, time (ISO 8601), line of text and kind added."""
         found, clock = [], EntryClock(page)
         for entry in page.entries:
             words = told_of(entry)

@@ -1,4 +1,4 @@
-"""Entries of the journal as lines of text in each language of the pages, and the kinds of entries."""
+"""Lines of text for journal entries in each page language, and the kinds of entries."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields
@@ -19,7 +19,7 @@ OFTEN, ENDS = ("face", CLOCK_SET), ("done.command.", "cancelled.command.", "lost
 
 @dataclass(frozen=True)
 class EntryPhrases:
-    """The phrases for lines about entries, in one language; `{}` is replaced."""
+    """The phrases for lines about entries in one language; `{}` is a placeholder."""
 
     says: str = "says “{}”"
     heard: str = "heard “{}”"
@@ -41,15 +41,15 @@ class EntryPhrases:
     code: str = "en"
 
     def deed(self, kind: str) -> str:
-        """Return the phrase for a command other than speech, by the name of its class."""
+        """Return the phrase for a non-speech command by its class name, or that name in lower case if there is none."""
         return DEEDS.get(self.code, {}).get(kind, kind.lower())
 
     def person(self, by: str) -> str:
-        """Return a person as the page shows them: a name as it is, a role in the language of the page."""
+        """Return a person's label on a page: a name unchanged, a role in the page's language."""
         return PEOPLE.get(self.code, {}).get(by, by)
 
     def jump(self, kind: str) -> str:
-        """Return the phrase for a jump of that kind; the kind itself if it is unknown here."""
+        """Return the phrase for a jump of that kind, or the kind itself if there is none."""
         name = kind.replace(" ", "_")
         return str(getattr(self, name)) if name in KNOWN else kind
 
@@ -77,7 +77,7 @@ OTHERS = {
         dropped_event="sebuah peristiwa dibatalkan", gap="sebagian catatan hilang", code="id",
     )
 }  # fmt: skip
-"""The languages of the pages besides English."""
+"""The phrases in the pages' languages besides English, by language code."""
 
 
 def kind_of(entry: Mapping[str, Any]) -> str:
@@ -105,7 +105,7 @@ def kind_of(entry: Mapping[str, Any]) -> str:
 def told_of(entry: Mapping[str, Any]) -> dict[str, Any]:
     """Return the `kind` and the `text` of an entry for a page.
 
-    In `texts` are the texts of other languages, if they differ from `text`.
+    `texts` has the texts in other languages that differ from `text`; it is left out if there are none.
     """
     text = text_of(entry)
     others = {code: other for code, words in OTHERS.items() if text and (other := text_of(entry, words)) != text}
@@ -113,7 +113,7 @@ def told_of(entry: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def text_of(entry: Mapping[str, Any], words: EntryPhrases = ENGLISH) -> str:
-    """Return the event and its effects as a line; empty for frequent events, such as a face, without an effect."""
+    """Return an entry's event and effects as a line; empty for a frequent event, such as a face, without an effect."""
     if told := _noted(_said(entry), words):
         return told
     if "jump" in entry:
@@ -132,7 +132,7 @@ def _said(entry: Mapping[str, Any]) -> Mapping[str, Any]:
 
 
 def _noted(said: Mapping[str, Any], words: EntryPhrases) -> str:
-    """Return the text of a person's mark or note, with the person; empty for another entry."""
+    """Return the text of a person's mark or note, with the person's name; empty for other entries."""
     what = next((key for key in (MARK, NOTE) if key in said), "")
     if not what:
         return ""

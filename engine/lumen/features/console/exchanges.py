@@ -1,4 +1,4 @@
-"""Follows each message of the console: whether the bus has it, whether a process receives it, and its answers."""
+"""The console's messages, followed until the bus has accepted or returned them, and their answers."""
 
 import asyncio
 import uuid
@@ -13,18 +13,18 @@ from lumen.ports import Message
 from lumen.run.asking import OPERATOR_ANSWERS
 
 ECHO = {"console": "echo"}
-"""Sent to ourselves right after a message: the bus keeps their order, so it has both once this is back."""
+"""Sent to the console itself after a message: the bus keeps their order, so the echo shows that it has both."""
 
 
 class Exchange:
-    """One message with its `answers`; `echo` is set once the bus has it, or `nobody` if no process receives it."""
+    """One message with its `answers`; `echo` is set when the bus has it, `nobody` if no process receives it."""
 
     def __init__(self) -> None:
         self.answers: asyncio.Queue[Any] = asyncio.Queue()
         self.echo, self.nobody = asyncio.Event(), asyncio.Event()
 
     async def taken(self, timeout: float) -> bool:
-        """Return True if the bus has the message within `timeout` [s] and did not return it as undeliverable."""
+        """Return True if the bus accepts the message within `timeout` [s] and does not return it as undeliverable."""
         return await _first(timeout, self.echo, self.nobody) and not self.nobody.is_set()
 
     async def answer(self, timeout: float) -> Any:
@@ -49,7 +49,7 @@ class Exchanges:
         self._open: dict[str, tuple[str, Exchange]] = {}
 
     def take(self, message: Message) -> None:
-        """Give a message on the key for answers to its exchange, if it is one of ours. Call it in the loop."""
+        """Pass an answer to its open exchange; ignore messages of other senders. Call it in the event loop."""
         if found := self._open.get(message.correlation_id):
             if message.body == ECHO:
                 found[1].echo.set()
@@ -61,14 +61,14 @@ class Exchanges:
         return message.correlation_id in self._open
 
     def nobody_takes(self, key: str) -> None:
-        """Mark the exchanges of this key as received by no process. Call it in the loop."""
+        """Mark the open exchanges with this key as received by no process. Call it in the event loop."""
         for sent, exchange in self._open.values():
             if sent == key:
                 exchange.nobody.set()
 
     @contextmanager
     def send(self, key: str, body: Any, *, ttl: float, by: str = "", echo: bool = False) -> Iterator[Exchange]:
-        """Send a message that expires after `ttl` [s], from the sender `by`. Raises BusError if it cannot be sent."""
+        """Send a message that expires after `ttl` [s], and yield its exchange. Raises BusError if it can't be sent."""
         bus = self._link.bus
         if bus is None:
             raise BusClosedError(self._link.trouble or "there is no bus")

@@ -1,4 +1,4 @@
-"""The paths about many houses: their status, and decisions on a rollout; sent to the centre on the console's bus."""
+"""The paths for a fleet: the houses' status, and decisions on a rollout, sent to the centre on the console's bus."""
 
 from typing import Any
 
@@ -12,7 +12,7 @@ from lumen.features.console.requests import DeniedError, Reception, as_json
 from lumen.language.fleet_keys import ORDER
 
 ANSWER_TIMEOUT = 5.0
-"""The time limit for the answer of a centre [s]."""
+"""The time limit for a centre's answer [s]."""
 DECISIONS = ("pause", "go", "abort")
 
 

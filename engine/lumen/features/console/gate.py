@@ -35,12 +35,12 @@ WRITING = ("POST", "PUT", "PATCH", "DELETE")
 
 
 class Gate:
-    """Refuses requests from other sites' pages, under unknown host names, or with unsuitable bodies.
+    """Refuses requests from other sites' pages, to unknown host names, or with unsuitable bodies.
 
-    It also adds headers to answers.
+    It also adds security headers to responses.
 
-    `hosts` are names and addresses under which the console is reached, besides the address of the connection itself.
-    The clients' addresses that `proxies` report are trusted.
+    `hosts` are the console's names and addresses besides the connection's local address. The client addresses that
+    `proxies` report are trusted.
     """
 
     def __init__(self, app: ASGIApp, hosts: Iterable[str], proxies: TrustedProxies | None = None) -> None:
@@ -84,7 +84,7 @@ class Gate:
 
 
 def refused(status: int, reason: str, **headers: str) -> JSONResponse:
-    """Return a JSON answer with the reason, a sentence."""
+    """Return a JSON response with this status and these headers; `reason` is a sentence."""
     return JSONResponse({"reason": reason}, status, headers)
 
 
@@ -97,7 +97,7 @@ def _readable(host: str) -> bool:
 
 
 def _same_address(name: str, here: str) -> bool:
-    """Return True if a host is the very address at which the connection came in; loopback has several."""
+    """Return True if both texts are the same IP address; False if one is not an address."""
     try:
         one, other = ipaddress.ip_address(name), ipaddress.ip_address(here)
     except ValueError:
@@ -124,7 +124,7 @@ async def _read(receive: Receive, headers: Mapping[str, str]) -> tuple[bytes, tu
 
 
 def _given(body: bytes, receive: Receive) -> Receive:
-    """Return a `receive` whose first message is the body that was read already."""
+    """Return a `receive` whose first message is the body already read."""
     read: list[Message] = [{"type": "http.request", "body": body, "more_body": False}]
 
     async def again() -> Message:

@@ -1,4 +1,4 @@
-"""Visitors' sentences, from which names are removed, with the states that heard them and the row that matched."""
+"""Visitors' sentences without names, with the states that heard them and the row that matched."""
 
 from collections.abc import Iterator
 from typing import Any, NamedTuple
@@ -15,7 +15,7 @@ ELSE = "else"
 
 
 class HearingState(NamedTuple):
-    """An active state that heard a sentence: the innermost of its region that has rows of `hears`."""
+    """An active state that heard a sentence: the innermost one with `hears` rows in its region."""
 
     behavior: str
     state: str
@@ -25,7 +25,7 @@ class HeardSentence(NamedTuple):
     """A sentence that active states heard."""
 
     text: str
-    """The sentence as it was heard."""
+    """The sentence without names."""
     language: str
     states: tuple[HearingState, ...]
     """The states that heard it."""
@@ -41,13 +41,12 @@ class HeardSentence(NamedTuple):
 
 
 def heard_sentence(behavior: str, taken: ReplayedStep, text: str) -> tuple[HeardSentence, dict[str, list[str]]] | None:
-    """Return a sentence as it was heard, and the keys of the rows of each of its states.
+    """Return a heard sentence without names, and the keys of the rows of each state that heard it.
 
-    The result is None if no active state has rows, the behaviour is unknown, or nothing is left of the sentence without
-    names.
+    Return None if no active state has rows, the behaviour is unknown, or the sentence consists of names only.
 
-    Names that the behaviours' context held before or afterwards are removed from it. Guards see the context of that
-    moment.
+    Names in the behaviours' context before or after the sentence are removed. Guards are evaluated with the context
+    before it.
     """
     machine, before = taken.machine, taken.before
     if machine is None or before is None:
@@ -68,7 +67,7 @@ def heard_sentence(behavior: str, taken: ReplayedStep, text: str) -> tuple[Heard
 
 
 def _named(behavior: str, machine: MachineDefinition, snapshot: Snapshot) -> Iterator[tuple[str, Running]]:
-    """Yield the name of the file and the state of each running behaviour."""
+    """Yield each running behaviour with its file's name."""
     names, waiting = {id(machine): behavior}, [machine]
     while waiting:
         for name, inner in waiting.pop().invoked.items():

@@ -1,10 +1,10 @@
 """One job of the console: `python -m lumen.features.console.job JOB PROJECT [ARGUMENTS]`.
 
-PROJECT is a folder, ARGUMENTS are JSON: the first is a robot of `robots:`, empty if there is only one.
+PROJECT is a folder. ARGUMENTS is a JSON list that begins with a robot of `robots:`, empty if there is only one.
 
-It is run by a `JudgeProcess`, and answers with JSON. Its memory and its time are limited; the system ends it if it
-needs more. Only `poses` gives several answers, one for each question. Each job imports its own
-modules, because imports are most of its time.
+A `JudgeProcess` runs the job, which answers with JSON. The system ends a job that exceeds its memory or time limit.
+Only `poses` sends several answers, one for each question. Each job imports its own modules, because imports need most
+of the time.
 """
 
 import json
@@ -27,13 +27,14 @@ from lumen.upkeep.judge_process import MAX_MEMORY, AnswerPipe, answering, limit_
 TOO_LONG_AGO = "too long ago"
 _MANIFEST = re.compile(r"skills/[^/]+\.yaml")
 REPLAY_TIME = 10.0
-"""The time limit for replaying visits with the saved files [s]; the rest are reported as unknown."""
+"""The time limit for replaying visits with the saved files [s]; visits left over are reported as unknown."""
 
 
 def day(pipe: AnswerPipe, root: Path, robot: str, wanted: str, form: str, whose: str) -> Iterator[bytes]:
-    """Answer with a day, for a page or as `csv`: from this machine's files, or from the pipe if `whose` is `told`.
+    """Answer with a day for a page, or as CSV if `form` is `csv`.
 
-    An empty `wanted` means the last day. The answer is NOTHING if this machine has no files.
+    The entries come from this machine's files, or from the pipe if `whose` is `told`. An empty `wanted` means the last
+    day. The answer is NOTHING if this machine has no files.
     """
     from lumen.features.console.day import day_csv
     from lumen.features.console.kept_days import KeptDays
@@ -49,7 +50,7 @@ def day(pipe: AnswerPipe, root: Path, robot: str, wanted: str, form: str, whose:
 
 
 def entries(pipe: AnswerPipe, root: Path, robot: str, first: int, last: int) -> Iterator[bytes]:
-    """Answer with the entries between two positions, from this machine's files."""
+    """Answer with up to MAX_SHOWN entries between two positions, from this machine's files."""
     from lumen.features.console.kept_days import KeptDays
 
     yield orjson.dumps(KeptDays(root, robot).entries(first, last, MAX_SHOWN), default=str)
@@ -63,7 +64,7 @@ def why(pipe: AnswerPipe, root: Path, robot: str, question: str, what: str, at: 
 
 
 def replay(pipe: AnswerPipe, root: Path, robot: str) -> Iterator[bytes]:
-    """Replay the recorded visits with the files on the disk; answer NOTHING if those have errors or that fails."""
+    """Replay the recorded visits with the saved files; answer NOTHING if the files have errors or the replay fails."""
     from lumen.lint import check_files
     from lumen.project.files import read_files
     from lumen.run.replaying.journals import KeptBundles, chosen
@@ -84,7 +85,7 @@ def replay(pipe: AnswerPipe, root: Path, robot: str) -> Iterator[bytes]:
 def saying(
     pipe: AnswerPipe, root: Path, robot: str, behavior: str, state: str, row: str, language: str, text: str
 ) -> Iterator[bytes]:
-    """Add a sentence of a visitor to the sayings, with the row that should have matched it; answer with their file."""
+    """Add a visitor's sentence to the sayings, with the row that should have matched it; answer with their file."""
     from lumen.language.sayings import Saying
     from lumen.run.new_saying import write_saying
 
@@ -92,7 +93,7 @@ def saying(
 
 
 def chart(pipe: AnswerPipe, root: Path, robot: str, hash: str) -> Iterator[bytes]:
-    """Answer with the chart of the behaviour that runs, as boxes and lines."""
+    """Answer with the running behaviour's chart, as boxes and lines."""
     from lumen.features.console.drawn_chart import chart_of
 
     yield orjson.dumps(chart_of(root, robot, hash))
@@ -107,19 +108,19 @@ def story(pipe: AnswerPipe, root: Path, robot: str, position: int, visitor: str,
 
 
 def skills(pipe: AnswerPipe, root: Path, robot: str, hash: str) -> Iterator[bytes]:
-    """Answer with the manifests of the project's skills."""
+    """Answer with the project's skills, read from their manifests."""
     yield orjson.dumps(skills_of(root, robot, hash))
 
 
 def sentence(pipe: AnswerPipe, root: Path, robot: str, said: dict[str, Any], hint: dict[str, Any]) -> Iterator[bytes]:
-    """Answer with the places in the saved files at which a sentence that the robot said may be written."""
+    """Answer with the places in the saved files from which a sentence of the robot probably comes."""
     from lumen.features.console.written_sentences import SaidSentence, places
 
     yield orjson.dumps(places(root, robot, SaidSentence(**said, **hint)))
 
 
 def wording(pipe: AnswerPipe, root: Path, robot: str, wanted: dict[str, Any], write: bool) -> Iterator[bytes]:
-    """Check a new wording of a sentence, and save it if `write`; answer with what lint finds."""
+    """Check a sentence's new wording, and save it if `write` is true and it has no errors; answer with the findings."""
     from lumen.features.console.rewording import NewWording, reword
 
     yield orjson.dumps(reword(root, robot, NewWording.read(wanted), write=write))
@@ -133,7 +134,7 @@ def shape(pipe: AnswerPipe, root: Path, robot: str) -> Iterator[bytes]:
 
 
 def poses(pipe: AnswerPipe, root: Path, robot: str) -> Iterator[bytes]:
-    """Answer each question that has joint angles with the poses of the links, any other with `null`."""
+    """Answer each question with the links' poses, or with `null` if it has no valid joint angles."""
     from lumen.features.console.drawing import Drawing
 
     drawing = Drawing(root, robot)
@@ -145,7 +146,7 @@ def poses(pipe: AnswerPipe, root: Path, robot: str) -> Iterator[bytes]:
 def skills_of(root: Path, robot: str, hash: str) -> dict[str, Any]:
     """Return the skills of the bundle `hash`, or of the saved files if that bundle was not kept, sorted by name.
 
-    Texts that a manifest has by language are maps from the language to the text.
+    A manifest's text in several languages is a map from language to text.
     """
     from lumen.project.files import read_files
     from lumen.run.one_robot import one_robot
@@ -193,7 +194,7 @@ def _read(questions: Iterable[bytes]) -> Iterator[Any]:
 
 
 def main(name: str, root: str, arguments: str) -> None:
-    """Do a job and send its answers; a LumenError is sent as an answer, too."""
+    """Run a job and send its answers, or the LumenError that it raises."""
     search_rarely()
     with answering(MAX_MEMORY) as pipe:
         limit_time(JOB_TIME)

@@ -1,4 +1,4 @@
-"""Work that needs much memory or time, in a process of its own: one at a time, with a short queue."""
+"""Jobs that need much memory or time, each in a separate process: one at a time, with a short queue."""
 
 import asyncio
 import sys
@@ -15,20 +15,20 @@ from lumen.upkeep.judge_process import Fault, JudgeProcess, NoAnswerError
 
 PROGRAM = "lumen.features.console.job"
 MAX_WAITING = 8
-"""The most jobs that run or wait; further ones are refused."""
+"""The maximum number of running and waiting jobs; further ones are refused."""
 MAX_ANSWER = 64 << 20
 """The largest answer of a job [bytes]."""
 
 
 class Jobs:
-    """Runs the jobs of `lumen.features.console.job` for the project in `root`. Its methods raise DeniedError."""
+    """Runs the jobs of `lumen.features.console.job` for the project in `root`; failures raise DeniedError."""
 
     def __init__(self, root: Path) -> None:
         self.root, self._turn = root, asyncio.Lock()
         self._waiting = 0
 
     async def do(self, job: str, *arguments: Any, told: AsyncIterator[bytes] | None = None) -> bytes:
-        """Run a job and return its answer; the lines of `told` are sent to the job. Errors of `told` are passed on."""
+        """Send the lines of `told` to a job, and return its answer. Errors that `told` raises are passed on."""
         if self._waiting >= MAX_WAITING:
             raise DeniedError(503, f"{MAX_WAITING} such requests are running already: try again in a moment")
         self._waiting += 1
