@@ -22,11 +22,11 @@ from lumen.run.one_robot import one_robot
 from lumen.run.replaying.journals import KeptBundles
 
 WINDOW = 86_400.0 * 1.5
-"""A file holds entries of a day only if it began within this time before the end of the day [s]."""
+"""A journal file can contain entries of a day only if it began within this time before the day's end [s]."""
 
 
 class KeptDays:
-    """Days of the project in `root`; of the first robot if it has several and `robot` is empty."""
+    """Days of a robot of the project in `root`: the one named `robot`, or the first if that is empty."""
 
     def __init__(self, root: Path, robot: str = "") -> None:
         self._robot = one_robot(root, robot)
@@ -34,7 +34,7 @@ class KeptDays:
         self._here = list[Project | None]()
 
     def day(self, wanted: date | None) -> Day | None:
-        """Return a day from the files of this machine, the last by default; None if there are no files."""
+        """Return the `wanted` day from this machine's files, by default the last; None if there are no files."""
         files = sorted(self._files(), key=lambda row: row[1])
         if not files:
             return None
@@ -61,14 +61,11 @@ class KeptDays:
         return {"entries": found, "epoch": epoch or None}
 
     def told(self, pages: Iterable[Any], wanted: date | None) -> Day:
-        """Return a day from pages of entries with their positions, as an exhibition sends them."""
+        """Return the `wanted` day, by default the last, from pages of entries as an exhibition sends them."""
         return self._still_open(day_of((entry for page in pages for entry in _recorded(page)), self._machine, wanted))
 
     def _still_open(self, found: Day) -> Day:
-        """Return the day without the questions and sentences that have been dealt with.
-
-        These are questions that a passage answers by now, and sentences that are now sayings.
-        """
+        """Remove unanswered questions that a passage now answers, and sentences that are now sayings; return the day."""
         if found.unanswered:
             known = knowledge_parts(read_files(self._root, self._robot)).knowledge.values()
             answered = {
@@ -89,7 +86,7 @@ class KeptDays:
         return found
 
     def _machine(self, hash: str, behavior: str) -> MachineDefinition | None:
-        """Return the behaviour of that bundle if it was kept, else that of the present files; None if it has errors."""
+        """Return the behaviour from its bundle, else from the saved files; None if these have errors or lack it."""
         if kept := self._kept.machine(hash, behavior):
             return kept
         if not self._here:

@@ -1,4 +1,4 @@
-"""Stories that are kept from the page Day: a recorded visit becomes a test in behaviors/stories/."""
+"""Stories saved from the page Day, which turn recorded visits into tests in behaviors/stories/."""
 
 from datetime import datetime
 from pathlib import Path
@@ -16,23 +16,23 @@ from lumen.run.storytelling.story_text import story_text
 from lumen.run.storytelling.visit_story import renaming, visit_story
 
 MAX_SAME = 100
-"""The most stories of visits that began in the same minute."""
+"""The maximum number of stories of visits that began in the same minute."""
 
 
 class KeptStory(NamedTuple):
-    """A story that was written."""
+    """A story that was written from a recorded visit."""
 
     file: Path
     """The path of its file, relative to the project's folder."""
     remark: str
-    """The robot's actions that differ with the files of today; empty if all are the same."""
+    """How the robot's actions differ with today's files; empty if all are the same."""
 
 
 def keep_story(root: Path, position: int, robot: str = "", *, visitor: str = "", name: str = "") -> KeptStory:
     """Write the story of the recorded visit that has the entry at `position`.
 
-    The `visitor` is called `name` in it. No file is overwritten. Raises UsageError if there is no such visit, it is not
-    whole, `name` is missing, or the file can't be written.
+    The story replaces the name `visitor` by `name`, and overwrites no file. Raises UsageError if no visit has that
+    entry, the visit is redacted or incomplete, `name` is missing, or the file can't be written.
     """
     visitor, name = " ".join(visitor.split()), " ".join(name.split())
     if visitor and not name:
@@ -54,7 +54,7 @@ def keep_story(root: Path, position: int, robot: str = "", *, visitor: str = "",
 
 
 def _visit(root: Path, position: int, robot: str, bundles: KeptBundles) -> RecordedVisit:
-    """Return the visit with that entry. Raises UsageError if no visit has it, or a visitor in it was forgotten."""
+    """Return the visit that has the entry at `position`. Raises UsageError if there is none or it is redacted."""
     recorded = visits(with_machines(chosen(root, None, all=True, robot=robot).entries(), bundles))
     for visit in recorded:
         if visit.first <= position <= visit.last:
@@ -65,7 +65,7 @@ def _visit(root: Path, position: int, robot: str, bundles: KeptBundles) -> Recor
 
 
 def _created(root: Path, stem: str, text: str) -> Path:
-    """Write a new file for a story; return its path in the project. Raises UsageError if it can't be written."""
+    """Write a story to a new file, and return its path in the project. Raises UsageError if it can't be written."""
     folder = root / STORIES
     try:
         folder.mkdir(parents=True, exist_ok=True)

@@ -1,4 +1,4 @@
-"""The state of one robot in the console: its exhibition's answers, its senses, its processes, its files."""
+"""The console's view of one robot: its exhibition's answers, senses, processes and files."""
 
 import re
 import time
@@ -14,23 +14,23 @@ from lumen.run.presence import HERE, LEAVES, LOST_AFTER
 from lumen.run.status import SKILL_STATES
 
 MAX_NAMES = 50
-"""The most names that are kept; a robot may still say the name of a visitor who has left."""
+"""The maximum number of names that are kept; a robot may still say the name of a visitor who has left."""
 LEFT_OUT = "…"
 
 
 class SpokenNames:
-    """The names that a robot heard or recognised lately. `add` may be called from any thread."""
+    """The latest names of a robot's visitors. Any thread may call `add`."""
 
     def __init__(self) -> None:
         self._names: tuple[str, ...] = ()
 
     def add(self, name: object) -> None:
-        """Remember a name. Ignore values that are not strings, blank ones and those already known."""
+        """Remember a name; ignore blank or known names and values that are not strings."""
         if isinstance(name, str) and (known := name.strip()) and known not in self._names:
             self._names = (*self._names, known)[-MAX_NAMES:]
 
     def without(self, text: str) -> str:
-        """Return the text with each of these names replaced by `…`, in upper or lower case."""
+        """Return the text with each of these names replaced by `…`, regardless of case."""
         for name in sorted(self._names, key=len, reverse=True):  # Ani Putri before Ani
             text = re.sub(rf"(?<!\w){re.escape(name)}(?!\w)", LEFT_OUT, text, flags=re.IGNORECASE)
         return text
@@ -52,9 +52,9 @@ FOR_NOBODY = ("robot", "connected", "heard", "stopped", "saying", "language", "l
 
 
 class KnownRobot:
-    """One robot as the console knows it; `version` increases with each change that a page would show.
+    """The console's view of one robot; `version` increases with each change that a page would show.
 
-    `entries` holds the latest entries of its journal.
+    `entries` contains the latest entries of the robot's journal.
     """
 
     def __init__(self, robot: str) -> None:
@@ -77,7 +77,7 @@ class KnownRobot:
 
     @property
     def position(self) -> int | None:
-        """The position of the last entry of its journal; None if its exhibition reports none or wrote no entry yet."""
+        """The position of the journal's last entry; None if the exhibition reports none or has written no entry yet."""
         found = self.said.get("position")
         return found if type(found) is int and found >= 0 else None
 
@@ -86,12 +86,12 @@ class KnownRobot:
         self._answered, self._heard = time.monotonic(), iso_time(time.time())
         self._names.add(said.get("visitor"))
         told = {**said, "ahead": self._ahead(said.get("time"))}
-        if not self.connected or {**told, "time": ""} != {**self.said, "time": ""}:  # time always passes
+        if not self.connected or {**told, "time": ""} != {**self.said, "time": ""}:  # a new time alone is no change
             self.said, self.connected = told, True
             self.version += 1
 
     def look(self, up: bool) -> None:
-        """Update what depends on time: its connection, lost processes, senses and faces. `up`: the bus is connected."""
+        """Update the connection, lost processes, senses and faces; `up` is True while the bus is connected."""
         silent = time.monotonic() - self._answered > SILENT_AFTER
         if self.connected and (silent or not up):
             self.connected = False
@@ -106,7 +106,7 @@ class KnownRobot:
             self.version += 1
 
     def feel(self, sense: str, body: Mapping[str, Any]) -> None:
-        """Store the body of a message of a sense, from any thread. `look` shows it on the pages."""
+        """Store the body of a sense's message until `look` passes it to the pages. Any thread may call this."""
         match sense:
             case "battery" | "sonar":
                 self._sensed[sense] = {key: value for key, value in body.items() if key != "time"}
@@ -124,7 +124,7 @@ class KnownRobot:
                     self._sensed["temperatures"] = dict(zip(names, hot, strict=True))
 
     def present(self, body: Mapping[str, Any]) -> None:
-        """Store the presence message of one of its processes: it is there, or it leaves."""
+        """Store a process's presence message. Beyond MAX_PROCESSES, the process silent for longest is dropped."""
         session, state = str(body.get("session"))[:40], str(body.get("state"))[:20]
         parts = [str(part)[:40] for part in body.get("parts", ())][:20]
         known = self._processes.get(session)
@@ -145,13 +145,13 @@ class KnownRobot:
         return bool(parts) and not any(said["state"] == HERE and not self._away(said) for said in parts)
 
     def told(self, files: Mapping[str, Any]) -> None:
-        """Store the answer of its exhibition about saved files."""
+        """Store the exhibition's answer about its files."""
         if files != self.files:
             self.files = dict(files)
             self.version += 1
 
     def to_json(self, *, full: bool) -> dict[str, Any]:
-        """Return the object for a page; all of it if `full`, which needs a role."""
+        """Return the robot as JSON data: everything if `full`, which needs a role, else the keys in FOR_NOBODY."""
         processes = [{k: v for k, v in said.items() if k != "at"} for said in self._processes.values()]
         said = {"robot": self.robot, **self.said, "connected": self.connected, "heard": self._heard or None}
         said |= {"senses": self.senses, "processes": processes, "files": self.files, "seen": self.seen}
@@ -166,14 +166,14 @@ class KnownRobot:
         return block
 
     def _for_nobody(self, said: Mapping[str, Any]) -> dict[str, Any]:
-        """Return the part shown without a role; names are removed from what the robot is saying."""
+        """Return the keys shown without a role; names are removed from the robot's speech."""
         shown = {key: said[key] for key in FOR_NOBODY if key in said}
         if isinstance(saying := shown.get("saying"), Mapping):
             shown["saying"] = {**saying, "text": self._names.without(str(saying.get("text", "")))}
         return shown
 
     def _faces(self) -> dict[str, Any]:
-        """Return the face seen just now, by its place in the image [px of 320 x 240], with its name if it is known."""
+        """Return the face last seen, if recent, with its position [px of 320 x 240] and name, empty if unknown."""
         now = time.monotonic()
         if now - self._saw > SEEN_FOR:
             return {"faces": []}
@@ -183,7 +183,7 @@ class KnownRobot:
     def _ahead(self, told: object) -> float:
         """Return how far the exhibition's clock, which a story can set, is ahead of ours [s].
 
-        A time that cannot be read, or a difference below CLOCK_TOLERANCE, leaves the previous value.
+        An unreadable time, or a change below CLOCK_TOLERANCE, leaves the previous value.
         """
         before = float(self.said.get("ahead", 0.0))
         try:
@@ -197,7 +197,7 @@ class KnownRobot:
 
 
 def _skill_states(told: object) -> dict[str, dict[str, Any]]:
-    """Return the states of skills in a presence message, without what is malformed."""
+    """Return the skills' states in a presence message; malformed ones are left out."""
     found: dict[str, dict[str, Any]] = {}
     for name, one in list(told.items())[:MAX_SKILLS] if isinstance(told, Mapping) else ():
         match one:

@@ -22,9 +22,9 @@ class Order(NamedTuple):
     key: str
     body: dict[str, Any]
     timeout: float
-    """The time limit of its last answer [s]."""
+    """The time limit for the final answer [s]."""
     outcome: Callable[[Any], str | None]
-    """Reads an answer: returns why it failed, empty if it succeeded, None if more answers follow."""
+    """Returns, for an answer, why the command failed, an empty text if it succeeded, None if more answers follow."""
     note: str = ""
     """A line for the journal, for commands that do not pass through the behaviour."""
 
@@ -33,7 +33,7 @@ Fields = Mapping[str, Any]
 
 
 def robot_outcome(answer: Any) -> str | None:
-    """Return why a robot failed, empty if it finished; None while it is still busy."""
+    """Return why a robot's command failed, an empty text if it finished, None while it runs."""
     match answer:
         case "command finished":
             return ""
@@ -48,7 +48,7 @@ def robot_outcome(answer: Any) -> str | None:
 
 
 def verdict_outcome(answer: Any) -> str | None:
-    """Return why an exhibition refused a question, empty if it accepted it."""
+    """Return why an exhibition refused a request, an empty text if it accepted it."""
     match answer:
         case {"verdict": "refused"}:
             return str(answer.get("reason") or "it was refused")
@@ -63,7 +63,7 @@ def verdict_outcome(answer: Any) -> str | None:
 
 
 def reload_outcome(answer: Any) -> str | None:
-    """Return why an order about files was refused, empty if it was not; None if further answers follow."""
+    """Return why an order about files was refused, an empty text if it was accepted, None if more answers follow."""
     match answer:
         case {"final": False}:
             return None

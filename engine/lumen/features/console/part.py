@@ -1,4 +1,4 @@
-"""The console of an exhibition: a process of its own, restarted if it dies; the exhibition is not affected."""
+"""The exhibition's console in a separate process, which is restarted if it ends; the exhibition is not affected."""
 
 import os
 import subprocess
@@ -81,7 +81,7 @@ class ConsolePart(Part):
     def _begin(self, now: float) -> None:
         environment = dict(os.environ)
         if not within_process(self._url):
-            environment["LUMEN_BUS"] = self._url  # it may hold a password: not in the arguments, which all can read
+            environment["LUMEN_BUS"] = self._url  # it may contain a password, and anyone can read arguments
         else:
             environment.pop("LUMEN_BUS", None)
         command = [sys.executable, "-m", "lumen", "console", str(self._root), "--beside"]
@@ -105,7 +105,7 @@ class ConsolePart(Part):
 
 
 def make(services: Services) -> ConsolePart:
-    """Make the part that serves the console's pages in a process of its own."""
+    """Return the part that serves the console's pages in a separate process."""
     directory = directory_of(services)
     root = directory.root if directory else Path(services.project.root)
     return ConsolePart(root, services.plan.url, services.tell("console"))

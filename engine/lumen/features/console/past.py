@@ -23,7 +23,7 @@ from lumen.language.operator_requests import FORK, WHY, WHY_NOT, OperatorRequest
 from lumen.run.new_passage import write_passage
 
 MAX_REMOTE = 40_000
-"""The most entries, counted from the last, that are requested from an exhibition for a day."""
+"""The maximum number of latest entries that are requested from an exhibition for a day."""
 
 
 class JournalSource:
@@ -33,7 +33,7 @@ class JournalSource:
         self._watch = watch
 
     async def pages(self, robot: str) -> AsyncIterator[bytes]:
-        """Yield the last entries of a robot, in pages as JSON; none of them is kept in memory."""
+        """Yield a robot's last MAX_REMOTE entries as pages of JSON, without keeping them in memory."""
         view = self._watch.robots[robot]
         begin, count = max(0, (view.position or view.entries.last) - MAX_REMOTE), 0
         while count < MAX_REMOTE and (page := (await self._watch.page(robot, begin)).entries):
@@ -42,7 +42,7 @@ class JournalSource:
             yield orjson.dumps(page)
 
     async def entries(self, view: KnownRobot, first: int, last: int) -> list[EncodedEntry]:
-        """Return the entries of a journal from `first` to `last`, up to a page beyond MAX_SHOWN."""
+        """Return a journal's entries from `first` to `last`, ending with the page that reaches MAX_SHOWN."""
         found = list[EncodedEntry]()
         while first <= last and len(found) < MAX_SHOWN and (page := await self._watch.page(view.robot, first)).entries:
             found += [one for one in view.entries.encoded(page) if first <= one.position <= last]
@@ -55,16 +55,16 @@ QUESTION_TIMEOUT = 20.0
 MAX_QUESTION = 500
 MAX_STORY_NAME = 200
 MAX_FOUND = 200
-"""The most entries that a search returns; the answer tells if there are more."""
+"""The maximum number of entries that a search returns; the answer reports whether there are more."""
 MAX_SEARCHED = 200_000
-"""The most positions that a search covers: several busy days."""
+"""The maximum number of positions that a search covers: several busy days."""
 ELSEWHERE = "this robot's files are on another machine: open the console there"
 SAID = ("behavior", "state", "row", "language", "text")
-"""The keys of a saying that is posted."""
+"""The keys of a posted saying."""
 
 
 class Past:
-    """Serves the paths about the past, from the answers of exhibitions, and by jobs from the project's own journals."""
+    """Serves the paths about the past, from exhibitions' answers or, through jobs, from the project's own journals."""
 
     def __init__(self, reception: Reception, jobs: Jobs) -> None:
         self._reception, self._jobs = reception, jobs
@@ -97,9 +97,9 @@ class Past:
         return as_json(await self.explained(view, question, what, request.query_params.get("at") or None))
 
     async def explained(self, view: KnownRobot, question: OperatorRequest, what: str, at: str | None) -> dict[str, Any]:
-        """Return why something happened, or did not: from the exhibition, else the journal.
+        """Return why something happened, or did not: from the exhibition, else from the journal.
 
-        Raises DeniedError if neither knows.
+        Raises DeniedError if neither has the answer.
         """
         try:
             said = await self._request(view, question(what=what, **({"at": at} if at else {})))
@@ -159,7 +159,7 @@ class Past:
         return _as_entries(await self.between(view, *_positions(request)))
 
     async def _search(self, request: Request) -> Response:
-        """Return the entries between two positions whose line contains a text, in any case and in any language."""
+        """Return up to MAX_FOUND entries between two positions whose line contains a text, in any case and language."""
         view, (first, last) = self.asked(request, Role.OPERATOR), _positions(request)
         text = " ".join(request.query_params.get("text", "").split()).casefold()
         if not 0 < len(text) <= MAX_QUESTION:
@@ -197,7 +197,7 @@ class Past:
         return as_json(said)
 
     async def _chart(self, request: Request) -> Response:
-        """Return the chart of the behaviour that runs, by the hash of its files."""
+        """Return the running behaviour's chart, found by the hash of its files."""
         view = self.asked(request, Role.SHOW)
         if not self.is_ours(view):
             raise DeniedError(400, ELSEWHERE)
@@ -205,7 +205,7 @@ class Past:
         return Response(drawn, headers=NO_STORE, media_type="application/json")
 
     async def _skills(self, request: Request) -> Response:
-        """Return the skills of the files that run, from their manifests."""
+        """Return the skills of the running files, read from their manifests."""
         view = self.asked(request, Role.SHOW)
         if not self.is_ours(view):
             raise DeniedError(400, ELSEWHERE)
@@ -213,7 +213,7 @@ class Past:
         return Response(found, headers=NO_STORE, media_type="application/json")
 
     async def _passage(self, request: Request) -> Response:
-        """Save an unanswered question with its answer as a passage; it is then checked as any saved file."""
+        """Save an unanswered question with its answer as a passage, which is then checked like any saved file."""
         self._reception.person(request, Role.AUTHOR)
         data = await self._reception.posted(request)
         if not self.is_ours(self._reception.robot(data.get("robot"))):
@@ -226,7 +226,7 @@ class Past:
         return as_json({"file": file.as_posix()})
 
     async def _saying(self, request: Request) -> Response:
-        """Save a sentence of a visitor as a saying, with the row of `hears` that should have matched it."""
+        """Save a visitor's sentence as a saying, with the row of `hears` that should have matched it."""
         self._reception.person(request, Role.AUTHOR)
         data = await self._reception.posted(request)
         view = self._reception.robot(data.get("robot"))
@@ -249,8 +249,9 @@ class Past:
         return await self.written("story", view, position, *texts)
 
     async def written(self, job: str, view: KnownRobot, *arguments: Any) -> Response:
-        """Return the answer of a job that writes a file. Raises DeniedError; a job's refusal is a fault of the request
-        (400).
+        """Return the answer of a job that writes a file.
+
+        Raises DeniedError, with the status 400 if the job refuses the request.
         """
         try:
             saved = await self._jobs.do(job, self.home(view), *arguments)
@@ -269,7 +270,7 @@ class Past:
     def home(self, view: KnownRobot) -> str:
         """Return the name by which jobs find the robot's files.
 
-        It is empty if the project has a single robot, or the robot is not of this project.
+        It is empty if the project has a single robot, or if the robot belongs to another project.
         """
         return self._watch.keys.home(view.robot) if self.is_ours(view) else ""
 
@@ -285,7 +286,7 @@ class Past:
 
 
 def _positions(request: Request) -> tuple[int, int]:
-    """Return the positions of the first and the last entry that are requested.
+    """Return the positions of the first and last requested entries.
 
     Raises DeniedError if one is not a whole number.
     """
@@ -296,7 +297,7 @@ def _positions(request: Request) -> tuple[int, int]:
 
 
 def _has(entry: Mapping[str, Any], text: str) -> bool:
-    """Return whether the line of an entry contains a case-folded text, in English or another language."""
+    """Return True if an entry's line, in English or another language, contains the case-folded `text`."""
     lines = (entry.get("text", ""), *(entry.get("texts") or {}).values())
     return any(text in str(line).casefold() for line in lines)
 
@@ -308,7 +309,7 @@ def _as_entries(found: Sequence[EncodedEntry], *, more: bool = False) -> Respons
 
 
 def _others(said: Any) -> dict[str, tuple[str, str]]:
-    """Return the question and the answer in other languages, by language code. Raises UsageError if malformed."""
+    """Return pairs of question and answer by language code, empty for null. Raises UsageError for other data."""
     if not isinstance(said, dict | None):
         raise UsageError("`also` must be an object with a `question` and an `answer` for each language")
     found = {}

@@ -5,16 +5,16 @@ from typing import NamedTuple
 
 
 class Role(IntEnum):
-    """The rights of a person, in ascending order: each role may do all that the lower ones may."""
+    """The roles of people in ascending order; each includes the rights of the lower ones."""
 
     NOBODY = 0
-    """A person without a PIN may make a robot rest."""
+    """Make a robot rest, which needs no PIN."""
     SHOW = 1
     """Look, set marks, approve, and press the buttons that the behaviour offers."""
     OPERATOR = 2
     """Control the robot and the behaviour."""
     AUTHOR = 3
-    """Change the files, too."""
+    """Change the files."""
 
     @property
     def word(self) -> str:
@@ -29,7 +29,7 @@ class Person(NamedTuple):
 
     @property
     def by(self) -> str:
-        """The name of the person in journals: their own, else that of the role."""
+        """The person's name in journals, else the role's word; for `NOBODY` "a person at the console"."""
         return self.name or (self.role.word if self.role else "a person at the console")
 
 

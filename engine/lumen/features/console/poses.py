@@ -1,4 +1,4 @@
-"""Poses and shapes of a robot's links, for drawing it; computed by processes that end after the last viewer left."""
+"""Shapes and poses for drawing a robot's links, computed by processes that end after the last viewer has left."""
 
 import asyncio
 from collections.abc import AsyncIterator
@@ -18,13 +18,13 @@ HEARTBEAT = 1.0
 POSE_TIME = 20.0
 """The time limit of one pose [s]: the first one loads the model."""
 LINGER, RETRY = 5.0, 5.0
-"""The life of the process after the last viewer left, and the pause before a failed one is restarted [s]."""
+"""How long the process runs after the last viewer has left, and the pause before a failed one restarts [s]."""
 
 
 class Poses:
-    """Poses of a robot of this console's own project; the models of other robots are unknown here.
+    """Shapes and poses of a robot of the console's own project; other robots' models are not available.
 
-    Raises DeniedError from every method if the project has errors, or MuJoCo is not installed.
+    If the project has errors or MuJoCo is not installed, `shape` raises DeniedError and `stream` yields `trouble`.
     """
 
     def __init__(self, watch: Watch, jobs: Jobs, robot: str) -> None:
@@ -43,7 +43,7 @@ class Poses:
         return self._shape[1]
 
     async def stream(self) -> AsyncIterator[bytes]:
-        """Yield server-sent events: `pose` with the newest pose after each move, `trouble` with the reason if none."""
+        """Yield server-sent events: `pose` after each move, or `trouble` with the reason if it can't be computed."""
         seen, waited, view = -1, 0.0, self._watch.robots[self._robot]
         self._lookers += 1
         try:
@@ -68,7 +68,7 @@ class Poses:
         return self._watch.keys.home(self._robot)
 
     async def _placed(self, view: KnownRobot) -> bytes:
-        """Return the event with its present pose, computed once for all viewers."""
+        """Return the event with the current pose, computed once for all viewers; a comment if there is no pose."""
         async with self._turn:
             moved = view.moved
             if self._pose[0] != moved:
@@ -78,7 +78,7 @@ class Poses:
             return self._pose[1]
 
     async def _asked(self, joints: bytes) -> bytes:
-        """Return the answer of the process; start one if necessary."""
+        """Return the process's answer; start one if necessary. Raises DeniedError if it fails."""
         if self._process is None:
             self._process = self._jobs.begin("poses", self._home)
         process = self._process
@@ -91,7 +91,7 @@ class Poses:
         return answer
 
     def _leave(self) -> None:
-        """End the process after the last viewer has left."""
+        """End the process unless there is a viewer again."""
         if not self._lookers and self._process:
             process, self._process = self._process, None
             process.end()

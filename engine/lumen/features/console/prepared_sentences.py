@@ -1,7 +1,7 @@
-"""Sentences that operators keep for the robot to say; every browser that shows the project has the same.
+"""Sentences that operators keep for the robot to say, shared by all browsers that show the project.
 
-They are in the project's state folder, as `prepared_sentences.json`. An operator adds them in the middle of a day; a
-row in lumen.yaml would be a saved file, which only an author can make active.
+They are stored as `prepared_sentences.json` in the project's state folder. They are not in lumen.yaml, because
+operators add them during the day, and only an author can make a changed file active.
 """
 
 from pathlib import Path
@@ -22,7 +22,7 @@ from lumen.upkeep.own_folders import private_folder, write_private
 PREPARED_FILE = "prepared_sentences.json"
 MAX_SENTENCES = 100
 MAX_BYTES = 1 << 20
-"""The largest size of the file [bytes]; a larger one was not written here."""
+"""The maximum size of the file [bytes]; a larger one counts as broken."""
 
 
 class PreparedSentence(NamedTuple):
@@ -40,7 +40,7 @@ class PreparedSentences:
         self.routes = [Route("/api/prepared", self._listed), Route("/api/prepared", self._changed, methods=["POST"])]
 
     def all(self) -> list[PreparedSentence]:
-        """Return the kept sentences in their order; none if the file is missing.
+        """Return the kept sentences in their order; an empty list if the file is missing.
 
         Raises UsageError if it is broken or can't be read.
         """

@@ -1,4 +1,4 @@
-"""The trusted proxies in front of the console: they report the address of a request, and whether it was encrypted."""
+"""Trusted proxies in front of the console, which report each request's client address and protocol."""
 
 import ipaddress
 from collections.abc import Iterable, MutableMapping
@@ -7,21 +7,21 @@ from typing import Any
 from lumen.errors import UsageError
 
 AsgiScope = MutableMapping[str, Any]
-"""A request, as ASGI has it."""
+"""The ASGI scope of a request."""
 Network = ipaddress.IPv4Network | ipaddress.IPv6Network
 Address = ipaddress.IPv4Address | ipaddress.IPv6Address
 
 
 def network_of(text: str) -> Network:
-    """Return a network such as `10.0.0.0/8`, or that of a single address. Raises ValueError if the text is neither."""
+    """Return a network such as `10.0.0.0/8`, or a single address as a network. Raises ValueError for other texts."""
     return ipaddress.ip_network(text, strict=False)
 
 
 class TrustedProxies:
     """Reads `X-Forwarded-For` and `X-Forwarded-Proto` of requests that come from these addresses or networks.
 
-    Anyone else can write anything into these headers, so they are ignored there. Raises UsageError for a text that is
-    neither an address nor a network.
+    They are ignored in requests from other addresses, because anyone can forge them. Raises UsageError for a text that
+    is neither an address nor a network.
     """
 
     def __init__(self, said: Iterable[str] = ()) -> None:
@@ -33,7 +33,7 @@ class TrustedProxies:
     def seen(self, scope: AsgiScope) -> AsgiScope:
         """Return the request with the `client` and the `scheme` that a trusted proxy reports.
 
-        A request that came from elsewhere is returned unchanged.
+        A request from any other address is returned unchanged.
         """
         client = scope.get("client")
         if not client or not self._trusts(_address(client[0])):
@@ -47,8 +47,9 @@ class TrustedProxies:
         return seen
 
     def _first_stranger(self, addresses: list[str]) -> str:
-        """Return the last address that no trusted proxy has; empty if there is none, or a later text is not an address.
-        Each proxy appends its peer.
+        """Return the last address that is not a trusted proxy's. Each proxy appends its peer's address.
+
+        Return an empty text if there is none, or if a text after it is not an address.
         """
         for text in reversed(addresses):
             address = _address(text)

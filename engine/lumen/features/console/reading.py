@@ -1,4 +1,4 @@
-"""`console:` of lumen.yaml, from its data to `ConsoleSettings`."""
+"""The reader of the section `console:` of lumen.yaml."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -9,5 +9,5 @@ from lumen.project.sections import read_fields
 
 
 def read_console(data: Mapping[str, Any], report: DocumentReport) -> ConsoleSettings:
-    """Return the settings in `console:`; their presence makes `lumen run` start a console in a process of its own."""
+    """Return the settings in `console:`, whose presence makes `lumen run` start a console in a separate process."""
     return read_fields(ConsoleSettings, data["console"], wanted=True)

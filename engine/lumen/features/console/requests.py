@@ -1,4 +1,4 @@
-"""Shared parts of the console's paths: the person and the robot of a request, and answers that refuse one."""
+"""Code shared by the console's paths: a request's person, robot and data, and responses that refuse it."""
 
 from typing import Any
 
@@ -16,13 +16,13 @@ from lumen.upkeep.ratelimit import RateLimiter
 
 NO_STORE = {"Cache-Control": "no-store"}
 REQUESTS_PER_SECOND = 60.0
-"""The rate limit of an address [1/s]; a command to rest is never counted."""
+"""The rate limit of an address [1/s]; commands to rest are not counted."""
 ALL = "*"
-"""Used instead of a robot's name: all robots."""
+"""Used instead of a robot's name to address all robots."""
 
 
 class DeniedError(Exception):
-    """A request is refused; the answer has this HTTP status, the reason as a sentence, and these headers."""
+    """A refused request, with the response's HTTP status, its reason (a sentence) and its headers."""
 
     def __init__(self, status: int, reason: str, **headers: str) -> None:
         super().__init__(reason)
@@ -49,7 +49,7 @@ class Reception:
         return person
 
     def resting(self, request: Request) -> Person:
-        """Return the person who makes a robot rest: no one is refused, and the request does not count."""
+        """Return the person who makes a robot rest, identified by session only; never refuse or count the request."""
         try:
             return self._known(request, address_of(request), bearer=False)
         except TooFastError:
@@ -87,7 +87,7 @@ def as_json(data: Any, status: int = 200, **headers: str) -> Response:
 
 
 async def say_why_not(request: Request, error: Exception) -> Response:
-    """Return the answer to an error, as JSON: a refusal, an unknown path or method, or a fault of the console."""
+    """Return the JSON response to an error: a refusal, an unknown path or method, or a fault of the console."""
     match error:
         case DeniedError():
             return refused(error.status, error.reason, **error.headers)

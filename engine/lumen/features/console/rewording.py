@@ -22,7 +22,7 @@ from lumen.run.new_passage import check_language, one_line
 from lumen.upkeep.replacing import replace_file
 
 WIDTH = 110
-"""The width of the lines of a folded text."""
+"""The maximum line width of a folded text [characters]."""
 MAX_STORIES = 10
 _PLAIN = re.compile(r"[^\W\d_][\w ]*[\w.!]")
 """A text that needs no quotes, also between brackets."""
@@ -59,7 +59,7 @@ class NewWording(NamedTuple):
 def reword(root: Path, robot: str, wanted: NewWording, *, write: bool) -> dict[str, Any]:
     """Check a new wording, and save it if `write` and no error is found; return what lint and the stories report.
 
-    Raises UsageError if the sentence is not in its file any more, a text is invalid, or the file can't be written.
+    Raises UsageError if the file has changed or lacks the sentence, a text is invalid, or the file can't be written.
     """
     files = read_files(root, robot)
     content = bytes(files.get(wanted.file, b""))
@@ -99,7 +99,7 @@ def reword(root: Path, robot: str, wanted: NewWording, *, write: bool) -> dict[s
 
 
 def _checked(before: Mapping[str, str], wanted: Mapping[str, str]) -> dict[str, str]:
-    """Return the texts that differ from before. Raises UsageError if one is invalid or was removed."""
+    """Return the changed texts by language. Raises UsageError if a text is invalid or empty, or its language unknown."""
     found = {}
     for language, text in wanted.items():
         if language not in before:
@@ -117,7 +117,7 @@ def _checked(before: Mapping[str, str], wanted: Mapping[str, str]) -> dict[str, 
 def reworded(one: WrittenSentence, content: bytes, texts: Mapping[str, str]) -> bytes:
     """Return the file with the new texts of a sentence, by language.
 
-    Raises UsageError if the way the file is written does not allow it.
+    Raises UsageError if the file's formatting does not allow it.
     """
     text, document = FileText(one.file, content), one.report.document
     expected, edits = copy.deepcopy(document.data), list[Edit]()
@@ -141,7 +141,7 @@ def reworded(one: WrittenSentence, content: bytes, texts: Mapping[str, str]) -> 
 
 
 def _edit(text: FileText, place: Place, said: str) -> Edit:
-    """Return the edit that replaces a text, written as before if that is possible: plain, quoted, or folded."""
+    """Return the edit that replaces a text, keeping its plain or folded style if possible; else the text is quoted."""
     first = text.line(place.line)[place.column - 1 :]
     if first[:1] not in (">", "|"):
         plain = first[:1] not in ("'", '"') and _PLAIN.fullmatch(said) and said.lower() not in _WORDS
@@ -165,7 +165,7 @@ def _put(data: Any, path: NodePath, value: str) -> None:
 
 
 def _folded(data: Any) -> Any:
-    """Return the data with single blanks in its texts: how a text is divided into lines does not matter."""
+    """Return the data with all whitespace in texts replaced by single blanks, because line breaks do not matter."""
     match data:
         case dict():
             return {key: _folded(value) for key, value in data.items()}
@@ -177,7 +177,7 @@ def _folded(data: Any) -> Any:
 
 
 def _new_findings(root: Path, before: Mapping[str, bytes], after: Mapping[str, bytes]) -> list[Diagnostic]:
-    """Return the findings of lint in the changed files that it did not report before, errors first."""
+    """Return the findings that lint reports only after the change, errors first."""
 
     def known(found: Iterable[Diagnostic]) -> set[tuple[str, str, str]]:
         return {(each.code, each.message, each.place.file) for each in found}
@@ -188,7 +188,7 @@ def _new_findings(root: Path, before: Mapping[str, bytes], after: Mapping[str, b
 
 
 def _stories(files: Mapping[str, bytes], texts: Iterable[str]) -> list[str]:
-    """Return the stories that contain one of the old texts; these probably expect it."""
+    """Return up to MAX_STORIES stories that contain an old text, because they probably expect it."""
     old = [text.encode() for text in texts]
     found = (file for file, content in files.items() if file.startswith(f"{STORIES}/"))
     return [file for file in sorted(found) if any(text in files[file] for text in old)][:MAX_STORIES]

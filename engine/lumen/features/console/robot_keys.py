@@ -1,4 +1,4 @@
-"""The routing keys of the robots of a bus: from the routes of this project, the default keys for other robots."""
+"""The routing keys of the robots on a bus: this project's routes for its own robots, the default keys for others."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -32,7 +32,7 @@ class RobotKeys(NamedTuple):
 
 
 class KeyBook:
-    """The keys of all robots; those of the project in `root` follow its lumen.yaml if that can be read."""
+    """The keys of all robots; those of the project in `root` follow its lumen.yaml if it can be read."""
 
     def __init__(self, root: Path) -> None:
         self._own = ""
@@ -45,7 +45,7 @@ class KeyBook:
         """Robots that are known before they report their presence: those of the project, or the one reached."""
 
     def use(self, reached: Reached) -> Sequence[str]:
-        """Read the routes again for a bus that was reached, and return the patterns to subscribe to there."""
+        """Read the routes again after a bus was reached, and return the patterns to subscribe to on it."""
         self._reached, self._own = reached, reached.robot
         settings = main_settings(self._root)
         ours = settings is not None and reached.robot in settings.robots
@@ -83,7 +83,7 @@ class KeyBook:
         )
 
     def _keys(self, robot: str) -> Mapping[str, str]:
-        """Return the keys of the routes that lumen.yaml has for one of our own robots."""
+        """Return one of our own robots' keys by route, for the routes that lumen.yaml has."""
         settings = main_settings(self._root, robot if self._told_apart else "")
         rows = settings.routes if settings else {}
         return {name: rows[name].key_for(robot) for name in (*HEARD, IMAGE, COMMAND_ROUTE, STOP_ROUTE) if name in rows}

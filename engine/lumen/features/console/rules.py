@@ -1,6 +1,4 @@
-"""The rules for the console: other machines need a PIN, no PIN is in a file, and trusted proxies are addresses or
-networks.
-"""
+"""The rules for the console: PINs protect it from other machines, no file contains a PIN, and proxies are addresses."""
 
 import re
 

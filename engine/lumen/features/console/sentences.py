@@ -1,4 +1,4 @@
-"""The path `/api/sentence`: the place of a sentence of the robot in the files, and a new wording of it."""
+"""The path `/api/sentence`, which finds a sentence of the robot in the files and saves a new wording of it."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -22,18 +22,18 @@ from lumen.language.operator_requests import WHY
 SAID_BY_AN_OPERATOR = "says “"
 ANSWER = "answer.command."
 OPERATOR, MODEL, FILE, NOWHERE = "operator", "model", "file", "nowhere"
-"""The sources of a sentence: an operator, a language model, a file of the project, or none that is known."""
+"""The sources of a sentence: an operator, a language model, a file of the project, or an unknown source."""
 
 
 class Sentences:
-    """Answers where the robot's sentences are written, and saves other wordings of them."""
+    """Finds the robot's sentences in the files, and saves new wordings of them."""
 
     def __init__(self, reception: Reception, jobs: Jobs, past: Past) -> None:
         self._reception, self._jobs, self._past = reception, jobs, past
         self.routes = [Route("/api/sentence", self._found), Route("/api/sentence", self._reworded, methods=["POST"])]
 
     async def _found(self, request: Request) -> Response:
-        """Return the places of the sentence that a command of an entry said."""
+        """Return the sentence that an entry's command said, its source, and its places in the files."""
         view = self._past.asked(request, Role.AUTHOR)
         if not self._past.is_ours(view):
             raise DeniedError(400, ELSEWHERE)
@@ -58,14 +58,14 @@ class Sentences:
     async def _hint(self, view: KnownRobot, id: str, entry: Mapping[str, Any]) -> dict[str, Any]:
         """Return the file and the line of the action behind a command, as `lumen why` finds them; empty if unknown."""
         try:
-            then = iso_time(time_of(str(entry.get("at_time"))) + 0.001)  # what happened within that millisecond counts
+            then = iso_time(time_of(str(entry.get("at_time"))) + 0.001)  # include the rest of the entry's millisecond
             [first, *_] = (await self._past.explained(view, WHY, id, then))["chain"]
         except (DeniedError, ValueError, KeyError):
             return {}
         return {"file": first["file"], "line": first["line"]} if first["file"] else {}
 
     async def _reworded(self, request: Request) -> Response:
-        """Check a new wording; save it too if `write` is true and lint finds no error in it."""
+        """Check a new wording, and save it if `write` is true and lint finds no error."""
         self._reception.person(request, Role.AUTHOR)
         data = await self._reception.posted(request)
         view = self._reception.robot(data.get("robot"))
@@ -84,7 +84,7 @@ def _typed(entry: Mapping[str, Any]) -> str:
 
 
 def _said(entry: Mapping[str, Any], id: str) -> dict[str, str] | None:
-    """Return the sentence of a command of the entry, the first one without `id`; None if there is none."""
+    """Return the sentence that the entry's command `id` says, or its first one if `id` is empty; None without one."""
     for command in entry.get("commands", ()):
         if (begun := started(command)) and begun[1] == "Say" and id in ("", begun[0]):
             return {key: str(begun[2].get(key) or "") for key in ("text", "language")} | {"id": begun[0]}
@@ -92,7 +92,7 @@ def _said(entry: Mapping[str, Any], id: str) -> dict[str, str] | None:
 
 
 def _answer(entry: Mapping[str, Any]) -> Mapping[str, Any]:
-    """Return the data of the answer to a visitor's question that an entry is about; empty for other entries."""
+    """Return the data of an entry that is an answer to a visitor's question; empty for other entries."""
     data = entry.get("data")
     is_answer = any(str(entry.get(how, "")).startswith(ANSWER) for how in HOWS)
     return data if is_answer and isinstance(data, Mapping) else {}

@@ -22,15 +22,15 @@ from lumen.features.console.watch import Watch
 from lumen.run.reaching import Reached
 
 END_TIMEOUT = 1
-"""The time limit for requests under way when the server ends [s]."""
+"""The time limit for open requests when the server ends [s]."""
 
 
 class Console:
     """Listens at `address` from its construction, and serves in `run` until a signal or `end`.
 
-    `reach` opens the bus of the project in `root`. `pins` are those of the roles; without any, every client may do
-    everything, so it must be on loopback and behind no proxy. `hosts` are other names of this machine, `proxies` the
-    addresses of trusted proxies. Port 0 is any free port. Raises UsageError if PINs are missing or the port is taken.
+    `reach` opens the bus of the project in `root`. Without `pins`, every client may do everything, so the console must
+    be on loopback and behind no proxy. `hosts` are other names of this machine, `proxies` the addresses of trusted
+    proxies. Port 0 selects any free port. Raises UsageError if PINs are missing or the port is not available.
     """
 
     def __init__(
@@ -84,7 +84,7 @@ class _Server(uvicorn.Server):
 
     @contextmanager
     def capture_signals(self) -> Iterator[None]:
-        """Restore the handlers, but do not raise the captured signal again as uvicorn does: this is a normal end."""
+        """Restore the handlers but, unlike uvicorn, do not raise the captured signal again: this is a normal end."""
         if threading.current_thread() is not threading.main_thread():
             yield
             return
@@ -101,7 +101,7 @@ class _Server(uvicorn.Server):
 
 
 def is_loopback(host: str) -> bool:
-    """Return True if only this machine can reach the host."""
+    """Return True for `localhost` and loopback addresses, which only this machine can reach."""
     try:
         return host == "localhost" or ipaddress.ip_address(host).is_loopback
     except ValueError:

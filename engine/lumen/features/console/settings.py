@@ -11,7 +11,7 @@ class ConsoleSettings:
     """The section `console:` of lumen.yaml."""
 
     wanted: bool = False
-    """`lumen run` starts a console in a process of its own."""
+    """True if `lumen run` starts a console in a separate process."""
     port: int = CONSOLE_PORT
     host: str = CONSOLE_HOST
     pins: Mapping[str, str] = field(default_factory=dict)

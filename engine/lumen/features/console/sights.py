@@ -33,7 +33,7 @@ class Sights:
             poses.closing = True
 
     def poses(self, robot: str) -> Poses:
-        """Return the poses of that robot, which are created once."""
+        """Return the shapes and poses of a robot, created on the first call."""
         if robot not in self._drawings:
             self._drawings[robot] = Poses(self._reception.watch, self._jobs, robot)
         return self._drawings[robot]

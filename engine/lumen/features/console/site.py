@@ -34,12 +34,12 @@ from lumen.project.project_folders import FLEET_FILE
 
 PAGES = Path(__file__).parent / "pages"
 MAX_STREAMS = 300
-"""The most streams that all pages together may have open."""
+"""The maximum number of streams that all pages together may have open."""
 _ID = re.compile(r"[A-Za-z0-9._:-]{1,100}")
 
 
 class Site:
-    """Answers requests from a watch, for the project in `root`; `app` is the ASGI application."""
+    """The console's site for the robots of a watch and the project in `root`; `app` is the ASGI application."""
 
     def __init__(self, watch: Watch, access: Access, root: Path) -> None:
         self.watch, self.access, self._root = watch, access, root
@@ -124,7 +124,7 @@ class Site:
         return StreamingResponse(_outcome(command), media_type="application/json", headers=headers)
 
     def _meant(self, robot: object, *, rests: bool) -> str:
-        """Return the robot's name. A command to rest may go to all robots, or to one that is not known yet."""
+        """Return the addressed robot's name, or ALL. Only a command to rest may address all robots or an unknown one."""
         known = self.watch.link.reached is not None and self.watch.robots
         if rests and (robot == ALL or (not known and isinstance(robot, str) and robot)):
             return str(robot)
@@ -133,7 +133,7 @@ class Site:
         return self.reception.robot(robot).robot
 
     async def _session(self, request: Request) -> Response:
-        encrypted = request.url.scheme == "https"  # a cookie that was set there never travels in the clear
+        encrypted = request.url.scheme == "https"  # a cookie set over HTTPS must never be sent unencrypted
         if request.method == "DELETE":
             self.access.end(request.cookies.get(COOKIE, ""))
             gone = as_json({"role": self.reception.person(request).role.word if not self.access.pins else "nobody"})

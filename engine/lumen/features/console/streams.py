@@ -27,11 +27,11 @@ class ReadPosition:
     """The positions up to which a page has received the journal and the state of one robot."""
 
     position: int
-    """The position of the last entry that it has."""
+    """The position of the last entry that the page has."""
     run: int
     """The `run` of the ring with that entry, -1 if unknown."""
     version: int = -1
-    """The version of the robot that it has, -1 for none."""
+    """The version of the robot that the page has, -1 for none."""
     at: float = 0.0
     """The time at which that version was sent [s, monotonic]."""
 
@@ -40,13 +40,13 @@ class Listener(NamedTuple):
     """A page that receives events."""
 
     robot: str
-    """The robot that it shows; empty for all."""
+    """The robot that the page shows; empty for all."""
     after: Mapping[str, int]
-    """The last position that it has, by robot; `""` is for any robot."""
+    """The last position that the page has, by robot; `""` applies to any robot."""
     full: bool
-    """It has a role, so it receives everything."""
+    """True if the page has a role and receives everything."""
     once: bool
-    """The stream ends after the events that exist now."""
+    """True if the stream ends after the events that exist now."""
 
 
 def positions_in(text: str, robot: str) -> dict[str, int]:

@@ -22,7 +22,7 @@ from lumen.run.reaching import Reached
 
 
 class Changes:
-    """Counts changes; `wait` returns when there was one since `seen`."""
+    """Counts changes, and wakes the callers of `wait` after each."""
 
     def __init__(self) -> None:
         self.count = 0
@@ -48,7 +48,7 @@ class Changes:
 PERIOD = 0.25
 """The time between two requests to an exhibition while a page is open [s]."""
 IDLE_PERIOD = 1.0
-"""The same while no page is open [s]."""
+"""The time between two requests to an exhibition while no page is open [s]."""
 SENSES_PERIOD = 1.0
 """The time between two updates of the shown senses [s]."""
 FILES_PERIOD = 3.0
@@ -60,7 +60,7 @@ FULL_PAGE = 100
 
 
 class Watch:
-    """The robots of a bus, by name; `changes` notifies the loop after any of them has changed.
+    """The robots on a bus, by name; `changes` counts their changes.
 
     Call all methods in the console's event loop. `reach` opens the bus of the project in `root`.
     """
@@ -71,7 +71,7 @@ class Watch:
         self.lookers = 0
         """The number of open streams of pages."""
         self.felt: Callable[[str, str, Mapping[str, Any]], None] = lambda _robot, _sense, _body: None
-        """Called with the robot, the sense and the body of each message of a sense, on a thread of the bus."""
+        """Called with the robot, sense and body of each message of a sense, on a thread of the bus."""
         self._tasks: dict[str, asyncio.Task[None]] = {}
         self._news = set[str]()
         self.link = BusLink(
@@ -82,7 +82,7 @@ class Watch:
 
     def start(self) -> None:
         self._loop = asyncio.get_running_loop()
-        for robot in self.keys.robots:  # known before they answer: their journals can be read without them
+        for robot in self.keys.robots:  # even before they answer, because their journals can be read without them
             self._know(robot)
         self.link.start()
 
@@ -92,7 +92,7 @@ class Watch:
         await asyncio.to_thread(self.link.close)
 
     def _later(self, call: Callable[..., object], *arguments: Any) -> None:
-        """Schedule a call in the console's loop; any thread may do so."""
+        """Schedule a call in the console's event loop. Any thread may call this."""
         with suppress(RuntimeError):  # the loop has ended
             self._loop.call_soon_threadsafe(call, *arguments)
 
@@ -110,7 +110,7 @@ class Watch:
         self._later(self.exchanges.nobody_takes, key)
 
     def _heard(self, message: Message) -> None:
-        """Store a message of a sense, a presence or a status of files. Called on a thread of the bus."""
+        """Handle a message about a sense, a presence or the files' status. Called on a thread of the bus."""
         body = message.body
         if not isinstance(body, Mapping):
             return
@@ -186,7 +186,7 @@ class Watch:
         return entries.add(await self.page(view.robot, entries.last + 1)) >= FULL_PAGE
 
     async def page(self, robot: str, begin: int) -> ToldPage:
-        """Return a page of entries of the journal from a position on. Raises BusError if no exhibition answers."""
+        """Return the page of a robot's journal from a position on. Raises BusError if no exhibition answers."""
         question = JOURNAL(**{"from": begin})
         said = await self.exchanges.request(self.keys.of(robot).operator, question, QUESTION_TIMEOUT)
         said = said if isinstance(said, dict) else {}

@@ -1,4 +1,4 @@
-"""Finds the text in a project's files behind a sentence of the robot: with its placeholders, in all languages."""
+"""Finds the text in a project's files behind a robot's sentence, with its placeholders and in all languages."""
 
 import hashlib
 import re
@@ -15,16 +15,16 @@ from lumen.project.draft import ProjectDraft
 from lumen.project.files import read_files
 
 MAX_PLACES = 5
-"""The most places that are shown for a sentence that is written several times."""
+"""The maximum number of places that are shown for a sentence."""
 ANY_LANGUAGE = ("", "any")
 NO_LANGUAGE = "gestures"
-"""A key of a `say` beside its languages."""
+"""The key of a `say` that is not a language."""
 MARKDOWN = ".md"
 _HOLE = re.compile(r"\{\{.*?\}\}", re.DOTALL)
 
 
 class SaidSentence(NamedTuple):
-    """A sentence of the robot."""
+    """A sentence that the robot said."""
 
     text: str
     language: str = ""
@@ -33,11 +33,11 @@ class SaidSentence(NamedTuple):
     line: int = 0
     """The line of that action; 0 if unknown."""
     passage: str = ""
-    """The name of its passage; empty if it belongs to none."""
+    """The name of the passage that contains it; empty if there is none."""
 
 
 class WrittenSentence(NamedTuple):
-    """A text in a file that a robot says."""
+    """A text in a file that a robot can say."""
 
     report: DocumentReport
     around: NodePath
@@ -68,12 +68,12 @@ class WrittenSentence(NamedTuple):
 
 
 def version_of(content: bytes) -> str:
-    """Return a hash of a file, by which a change since it was read is noticed."""
+    """Return a hash of a file's content, which detects later changes."""
     return hashlib.sha256(content).hexdigest()
 
 
 def places(root: Path, robot: str, said: SaidSentence) -> list[dict[str, Any]]:
-    """Return the places of a sentence in the saved files, the most probable first; none if it is in no file."""
+    """Return the most probable places of a sentence in the saved files; an empty list if no file has it."""
     files = read_files(root, robot)
     found = draft(files)
     languages = tuple(found.settings.languages) if found.settings else ()
@@ -81,10 +81,10 @@ def places(root: Path, robot: str, said: SaidSentence) -> list[dict[str, Any]]:
 
 
 def places_in(found: ProjectDraft, said: SaidSentence) -> list[WrittenSentence]:
-    """Return the texts of a draft that make this sentence, the most probable first.
+    """Return up to MAX_PLACES equally probable texts of a draft that can yield this sentence.
 
-    The text of its action counts if that has words of its own. If it is only a placeholder, the text comes from a
-    table, a list or a passage. Without a known action, the texts with the most words of their own count.
+    A text must have words outside its placeholders. A text of the sentence's action or passage is most probable, then
+    the text with the most letters outside its placeholders, then one in a table, a list or a passage.
     """
     fitting = [(one, own) for one in written(found) if (own := own_letters(one.text, said.text))]
     same = [row for row in fitting if not said.language or row[0].language in ("", said.language)]
@@ -101,7 +101,7 @@ def places_in(found: ProjectDraft, said: SaidSentence) -> list[WrittenSentence]:
 
 
 def _is_of(one: WrittenSentence, said: SaidSentence) -> bool:
-    """Return whether a text belongs to the action that said the sentence."""
+    """Return True if a text belongs to the action that said the sentence."""
     if one.file != said.file or not said.line:
         return False
     document = one.report.document
@@ -109,7 +109,7 @@ def _is_of(one: WrittenSentence, said: SaidSentence) -> bool:
 
 
 def own_letters(template: str, said: str) -> int:
-    """Return how many letters and digits of a text are its own, if it makes the sentence; else 0."""
+    """Return the number of letters and digits outside a text's placeholders if it can yield the sentence, else 0."""
     literals = [" ".join(literal.split()) for literal in _HOLE.split(template)]
     own = sum(sign.isalnum() for literal in literals for sign in literal)
     pattern = r"\s*(?:.*?)\s*".join(re.escape(literal) for literal in literals)
@@ -127,7 +127,7 @@ def written(found: ProjectDraft) -> Iterator[WrittenSentence]:
 
 
 def _plain_entries(found: ProjectDraft) -> Iterator[tuple[DocumentReport, NodePath]]:
-    """Yield the place of each text in a list that has no language; an expression may use it."""
+    """Yield the place of each list text without a language, because an expression may use it."""
     for tables in word_tables(found):
         for name, entries in tables.lists.items():
             for number, entry in enumerate(entries):
@@ -157,9 +157,9 @@ def _alternatives(
 
 
 def texts_of(one: WrittenSentence, languages: tuple[str, ...]) -> dict[str, str]:
-    """Return the same text in each language that has it; languages of the project that lack it have an empty text.
+    """Return the same text by language; it is empty in the project's languages that lack it.
 
-    Of alternatives, the one with the same number counts; a language that has fewer is left out.
+    An alternative corresponds to the one with the same index; a language with fewer alternatives is left out.
     """
     value = one.report.document.find(one.around)
     if not isinstance(value, Mapping):
