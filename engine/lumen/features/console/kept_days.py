@@ -65,7 +65,7 @@ class KeptDays:
         return self._still_open(day_of((entry for page in pages for entry in _recorded(page)), self._machine, wanted))
 
     def _still_open(self, found: Day) -> Day:
-        """Remove unanswered questions that a passage now answers, and sentences that are now sayings; return the day."""
+        """Return the day without questions that a passage now answers, and without sentences that are now sayings."""
         if found.unanswered:
             known = knowledge_parts(read_files(self._root, self._robot)).knowledge.values()
             answered = {

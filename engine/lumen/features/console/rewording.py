@@ -99,7 +99,7 @@ def reword(root: Path, robot: str, wanted: NewWording, *, write: bool) -> dict[s
 
 
 def _checked(before: Mapping[str, str], wanted: Mapping[str, str]) -> dict[str, str]:
-    """Return the changed texts by language. Raises UsageError if a text is invalid or empty, or its language unknown."""
+    """Return the changed texts by language. Raises UsageError for an invalid or removed text or an unknown language."""
     found = {}
     for language, text in wanted.items():
         if language not in before:

@@ -124,7 +124,7 @@ class Site:
         return StreamingResponse(_outcome(command), media_type="application/json", headers=headers)
 
     def _meant(self, robot: object, *, rests: bool) -> str:
-        """Return the addressed robot's name, or ALL. Only a command to rest may address all robots or an unknown one."""
+        """Return the addressed robot's name, or ALL. Only a command to rest can address ALL or an unknown robot."""
         known = self.watch.link.reached is not None and self.watch.robots
         if rests and (robot == ALL or (not known and isinstance(robot, str) and robot)):
             return str(robot)

@@ -18,18 +18,18 @@ from lumen.project.yaml_reader import parse
 
 
 class Judgement(NamedTuple):
-    """The findings about a project, and by name its files that are invalid YAML."""
+    """A project's findings, and its files that are invalid YAML, by name."""
 
     diagnostics: tuple[Diagnostic, ...]
     broken: Mapping[str, BrokenFile]
 
 
 class Analysis:
-    """The analysis of a project's files. Each part is computed when it is first needed; faulty files raise no errors.
+    """The analysis of a project's files. Each result is computed when first needed; faulty files raise no errors.
 
-    `files` are the contents by the path relative to `root`. `before` is an earlier analysis of the same project: if a
-    file is invalid YAML now, its last readable version replaces it. Words that come with Lumen are known although they
-    are not among the files. A pickled analysis contains only the files and what is known from earlier analyses.
+    `files` are the contents by path relative to `root`. `before` is an earlier analysis of the same project: if a file
+    that is now invalid YAML can't be repaired, its last readable version replaces it. The analysis includes the words
+    that come with Lumen. A pickled analysis contains only the files, and earlier versions and findings.
     """
 
     def __init__(self, root: Path, files: Mapping[str, bytes], before: "Analysis | None" = None) -> None:
@@ -56,16 +56,16 @@ class Analysis:
 
     @cached_property
     def readable(self) -> Mapping[str, bytes]:
-        """The contents of all files by name; invalid YAML is replaced by its readable part."""
+        """The contents of all files by name; invalid YAML is replaced by a readable version, if there is one."""
         return {**self.files, **{file: each.readable for file, each in self.broken.items()}}
 
     @cached_property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
-        """All findings, as from `lumen lint`; about an invalid YAML file also the findings in its readable part."""
+        """All findings, as from `lumen lint`; for an invalid YAML file also the findings in its readable part."""
         return self.judged(lambda: None).diagnostics
 
     def judged(self, between: Callable[[], None]) -> Judgement:
-        """Return the findings. The check calls `between` from time to time, which may raise an error to end it."""
+        """Return the findings. The check calls `between` repeatedly, which can raise an error to end the check."""
         found = tuple(check_files(self.root, self.readable, between)[1])
         if self.broken:
             said = [d for each in self.broken.values() for d in each.diagnostics]
@@ -82,7 +82,7 @@ class Analysis:
 
     @property
     def known(self) -> KnownFindings:
-        """The signatures of the last findings that were computed while all files were readable; empty without any."""
+        """The signatures of the last findings that were computed with all files readable; empty if there are none."""
         found = self.__dict__.get("diagnostics")
         return self._known if found is None or self.broken else frozenset(map(signature, found))
 
@@ -95,14 +95,14 @@ class Analysis:
     def names(self, file: str) -> NameIndex:
         """Return the index of names for proposals in a file.
 
-        An earlier index that includes the file is preferred, because it is available at once.
+        An earlier index that includes the file is preferred, because it is available immediately.
         """
         last = self.known_index
         return last if last is not None and file in last.documents else self.index
 
     @cached_property
     def draft(self) -> ProjectDraft:
-        """The parts of the project that could be built in spite of its errors."""
+        """The parts of the project that could be built despite its errors."""
         return draft(self.readable)
 
     @cached_property
@@ -113,7 +113,7 @@ class Analysis:
 
     @cached_property
     def documents(self) -> Mapping[str, Document]:
-        """The parsed files by name, and Lumen's own words unless the project replaces them."""
+        """The parsed readable files by name, with Lumen's own words unless the project replaces them."""
         files = {COMMON_FILE: common_words(), **self.readable}
         read = {file: parse(file, content)[0] for file, content in files.items() if kind_of(file)}
         return {file: document for file, document in read.items() if document}
@@ -130,9 +130,9 @@ class Analysis:
         return self.files.get(file, b"").decode("utf-8-sig", "replace")
 
     def readable_text(self, file: str) -> str:
-        """Return the text of a file or of its readable replacement."""
+        """Return the text of a file or of its readable replacement, empty if the file does not exist."""
         return self.readable.get(file, b"").decode("utf-8-sig", "replace")
 
     def changed(self, file: str, text: str) -> "Analysis":
-        """Return a later analysis with another text in one file."""
+        """Return a later analysis in which one file has a new text."""
         return Analysis(self.root, {**self.files, file: text.encode("utf-8", "surrogatepass")}, self)

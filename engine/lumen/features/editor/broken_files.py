@@ -29,14 +29,14 @@ class BrokenFile(NamedTuple):
 
 
 def broken_files(files: Mapping[str, bytes], before: Mapping[str, bytes]) -> dict[str, BrokenFile]:
-    """Return by name the files that are invalid YAML and can be replaced; `before` are the last readable versions."""
+    """Return, by name, the invalid YAML files that can be replaced; `before` are the last readable versions."""
     return {file: found for file, content in files.items() if (found := _broken(file, content, before))}
 
 
 def follows(finding: Diagnostic, broken: Mapping[str, BrokenFile], known: KnownFindings) -> bool:
     """Return True if a finding may result only from the unreadable part of a file.
 
-    It is in or around that part, quotes a word of it, or is neither an error nor among the earlier findings `known`.
+    Such a finding is in or around that part, quotes a word of it, or is a new warning or hint, absent from `known`.
     """
     here = broken.get(finding.place.file)
     if here and (here.mended is None or finding.place.line - 1 in here.mended.around | here.mended.cut):
@@ -48,7 +48,7 @@ def follows(finding: Diagnostic, broken: Mapping[str, BrokenFile], known: KnownF
 
 
 def signature(finding: Diagnostic) -> tuple[str, str, str]:
-    """Return the code, file and message of a finding, which stay the same when lines are written above it."""
+    """Return the code, file and message of a finding, which do not change when its line moves."""
     return finding.code, finding.place.file, finding.message
 
 

@@ -54,7 +54,7 @@ class Item(NamedTuple):
 
 
 def complete(analysis: Analysis, file: str, line: int, column: int) -> list[Item]:
-    """Return the proposals for a line and column, from 1, the best first."""
+    """Return the proposals for a line and column, from 1, the best first; none if the cursor's node is unknown."""
     here = cursor(analysis.text(file), line, column, lambda: analysis.readable_text(file))
     kind = kind_of(file)
     if here is None or not kind:
@@ -65,7 +65,7 @@ def complete(analysis: Analysis, file: str, line: int, column: int) -> list[Item
 def _fitting(items: Iterable[Item], before: str) -> list[Item]:
     """Return the items that contain the typed letters in order.
 
-    First come those that begin with the letters, then those that contain them together, then all others.
+    The items that begin with these letters come first, then those that contain them without gaps, then all others.
     """
     ranked = [(rank, item) for item in items if (rank := _rank(item, before)) is not None]
     return [item for _, item in sorted(ranked, key=lambda each: each[0])]
@@ -124,7 +124,7 @@ class _Completion:
             yield from self.keys(path)
 
     def keys(self, path: NodePath) -> Iterator[Item]:
-        """Yield the keys of the schema that the map at a path does not have yet."""
+        """Yield the schema's keys that the map at a path does not have yet."""
         there = self.here.document.value(path)
         taken = there if isinstance(there, dict) else {}
         for key, schema in keys_at(self.kind, path, self.verbs).items():
@@ -161,7 +161,7 @@ class _Completion:
                 yield from (f"{loop['as']}.{key}" for key in keys)
 
     def lists(self) -> Mapping[str, Any]:
-        """Return the lists that are known in the file, by name; in a words file also those of its users."""
+        """Return the file's own lists by name, with those of its words files, or for a words file those of its users."""
         found: dict[str, Any] = {}
         users = [name for name, words in self.index.words.items() if self.scope in (name, *words)]
         for scope in dict.fromkeys((self.scope, *(s for name in users for s in (name, *self.index.words[name])))):
@@ -171,11 +171,11 @@ class _Completion:
         return found
 
     def slot_detail(self, name: str) -> str:
-        """Return the description of a slot, named after a type or list, in a phrase."""
+        """Return the description of a phrase's slot by the name of its type or list."""
         return _SLOTS.get(name, "an entry of the list, by its `phrases`")
 
     def caught(self, path: NodePath) -> list[str]:
-        """Return the members that `heard` has in the row of `hears` around a node; none outside such a row."""
+        """Return the members of `heard` in the row of `hears` around a node; an empty list outside such a row."""
         key = row_around(path)
         if not key:
             return []
@@ -190,18 +190,18 @@ class _Completion:
         return list(dict.fromkeys(found))
 
     def names(self, kind: NameKind, path: NodePath, *, key: bool = False) -> Iterator[Item]:
-        """Yield a proposal for each name of a kind that is possible at a path."""
+        """Yield a proposal for each possible name of a kind at a path."""
         wide, end = len(self.here.word), ": " if key else ""
         for name, detail in self.candidates(kind, path, key=key):
             written = f'"{name}"' if name.startswith("#") and not self.quoted() else name
             yield Item(written + end, detail or str(kind), wide)
 
     def quoted(self) -> bool:
-        """Return True if the cursor is in quotes, so that a `#` begins no comment."""
+        """Return True if the cursor is in quotes, where `#` does not begin a comment."""
         return self.here.quote != ""
 
     def candidates(self, kind: NameKind, path: NodePath, *, key: bool) -> Iterator[tuple[str, str]]:
-        """Yield the names of a kind that are possible at a path, with their descriptions."""
+        """Yield the possible names of a kind at a path, each with its description, which may be empty."""
         match kind:
             case NameKind.STATE:
                 yield from self.states(path) if not key or self.kind == "sayings" else ()
@@ -219,9 +219,9 @@ class _Completion:
                 yield from ((name, "") for name in self.index.known(kind, scope))
 
     def states(self, path: NodePath) -> Iterator[tuple[str, str]]:
-        """Yield the names of states that are possible at a path, each with the state's path.
+        """Yield the possible names of states at a path, each with the state's path.
 
-        In a behaviour these are the state itself, those beside it, its children, and all others by their ids.
+        In a behaviour these are the state itself, its siblings, its children, and all others by their ids.
         """
         tree = self.index.outlines.get(self.scope)
         if tree is None:
@@ -243,10 +243,10 @@ class _Completion:
         yield from ((f"#{other.name}", other.path) for other in tree.entries.values() if other.parent)
 
     def events(self, *, waits: bool) -> Iterator[tuple[str, str]]:
-        """Yield names of events with their origins.
+        """Yield names of events, each with its origin, which is empty for events of the project's files.
 
-        If the name is that of an awaited event (`waits`), events that something raises are included, but not those that
-        only other files await; otherwise all events in the project's files.
+        For an awaited event (`waits`), these are the events that something raises and those in this file, but not those
+        that only other files await; otherwise all events in the project's files.
         """
         written = self.index.at(self.file, *self.at)
         uses = [w for w in self.index.uses if w.kind is NameKind.EVENT and w is not written]
@@ -260,7 +260,7 @@ class _Completion:
             yield from ((f.removesuffix(".") + ".*", "the engine's") for f in BUILT_IN_FAMILIES)
 
     def field(self, before: str) -> Iterator[Item]:
-        """Yield the routes, or after a dot the fields of the route's message."""
+        """Yield the routes or, after a dot, the fields of the route's message."""
         route, dot, part = before.partition(".")
         if dot:
             yield from (Item(name, "field", len(part)) for name in self.fields(self.schema(route)))
@@ -297,7 +297,7 @@ class _Completion:
             yield from (Item(f"{name}(", what, wide) for name, what in self.functions())
 
     def beginnings(self, path: NodePath) -> list[str]:
-        """Return the names that an expression can begin with; in a function of the project, these are its arguments."""
+        """Return the names that can begin an expression; in a function of the project, only its arguments."""
         if self.kind == "function":
             data = self.here.document.data
             arguments = data.get("args") if isinstance(data, dict) else None
@@ -317,13 +317,13 @@ class _Completion:
         return self.kind == "function" and stem(self.file) == function
 
     def event_fields(self, path: NodePath) -> list[str]:
-        """Return the data fields of the events that can arrive at an expression."""
+        """Return the data fields of the events under whose `on` an expression is; an empty list outside `on`."""
         event = next((str(path[i + 1]) for i in range(len(path) - 2, -1, -1) if path[i] == "on"), "")
         found = (schema for name, schema in self.declared() if event and hears(event, name))
         return list(dict.fromkeys(name for schema in found for name in self.fields(schema)))
 
     def declared(self) -> Iterator[tuple[str, Any]]:
-        """Yield the events of routes, the robot, modules and the file, each with the schema of its data."""
+        """Yield the events of routes, the robot, modules and the file, each with its data's schema."""
         own = self.index.documents.get(self.file)
         yield from ((route.event, self.schema(name)) for name, route in self.routes().items())
         yield from robot_events().items()
@@ -332,23 +332,23 @@ class _Completion:
         yield from events.items() if isinstance(events, dict) else ()
 
     def module_events(self) -> Mapping[str, Any]:
-        """Return the events of the project's own modules, each with the schema of its data."""
+        """Return the events of the project's own modules, each with its data's schema."""
         settings = self.analysis.settings.settings
         return own_module_events(settings.modules) if settings else {}
 
     def routes(self) -> Mapping[str, Route]:
-        """Return the project's routes, and those of Lumen that it does not remove."""
+        """Return the project's routes, and Lumen's routes that the project does not replace or remove."""
         settings = self.analysis.settings.settings
         own, removed = (settings.routes, settings.removed_routes) if settings else ({}, frozenset[str]())
         return {**own, **{n: r for n, r in BUILT_IN_ROUTES.items() if n not in own and n not in removed}}
 
     def schema(self, route: str) -> Any:
-        """Return the schema of a route's message, None if the route is unknown."""
+        """Return the schema of a route's message, None if the route or its schema is unknown."""
         known = self.routes().get(route)
         return known and (self.analysis.settings.messages.get(known.schema) or shipped_message(known.schema))
 
     def fields(self, schema: Any) -> list[str]:
-        """Return the names of a schema's properties."""
+        """Return the names of a schema's properties; an empty list if it has none."""
         properties = schema.get("properties") if isinstance(schema, Mapping) else None
         return list(properties) if isinstance(properties, Mapping) else []
 

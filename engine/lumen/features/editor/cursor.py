@@ -1,4 +1,4 @@
-"""The place of a cursor in the tree of a file while its line is still being written."""
+"""The node at the cursor while its line is still being written."""
 
 import re
 from collections.abc import Callable
@@ -65,7 +65,7 @@ def _cursor(lines: list[str], line: int, column: int) -> Cursor | None:
 
 
 def _attempts(head: str, tail: str) -> list[str]:
-    """Return versions of the line with the mark that may be valid YAML, the most likely first."""
+    """Return versions of the line with the mark that can be valid YAML, the most likely first."""
     rest = head.rstrip("\r")
     closed = _closed(rest)
     whole = [f"{head}{CURSOR_MARK}{tail}"]
@@ -92,7 +92,7 @@ def _closed(head: str) -> str:
 
 
 def _marked(document: Document) -> tuple[NodePath, bool, str] | None:
-    """Return the path of the key or text with the mark, whether it is a key, and its text; None if nothing has it."""
+    """Return the path of the key or text with the mark, True if it is a key, and its text; None without the mark."""
     for path in document.spans:
         if path and isinstance(path[-1], str) and CURSOR_MARK in path[-1]:
             return path, True, path[-1]

@@ -8,7 +8,7 @@ from lumen.project.document import Document
 
 
 class Fold(NamedTuple):
-    """The first and last line, from 1, of a part that folds into its first line; `comment` tells comments from keys."""
+    """The first and last line, from 1, of a range that folds into its first line; `comment` is False for a key."""
 
     first: int
     last: int
@@ -16,7 +16,7 @@ class Fold(NamedTuple):
 
 
 def folds(document: Document) -> list[Fold]:
-    """Return all folds of a document in order; of those that begin in the same line only the longest."""
+    """Return all folds of a document in order, only the longest of those that begin in the same line."""
     lines, found = lines_of(document.text), dict[int, Fold]()
     for fold in (*_nodes(document, lines), *_comments(lines)):
         if fold.last > fold.first and (fold.first not in found or found[fold.first].last < fold.last):
@@ -29,7 +29,7 @@ def _nodes(document: Document, lines: list[str]) -> Iterator[Fold]:
         first = span.key.line if span.key else span.value.line
         last = min(span.value.end_line, len(lines))
         if span.value.end_line <= len(lines) and not lines[last - 1][: span.value.end_column - 1].strip():
-            last -= 1  # it ends where the next node begins
+            last -= 1  # the span ends at the beginning of the next node
         while last > first and (not lines[last - 1].strip() or _is_comment(lines[last - 1])):
             last -= 1
         if span.key or first > 1:

@@ -1,18 +1,18 @@
-"""The part of a file around a line that shows the line's place in the tree; the rest may be invalid."""
+"""The lines of a file that determine one line's place in the tree; the others may be invalid."""
 
 import re
 
 ANCESTORS_WHOLE, LINES_WHOLE = 3, 120
-"""The number of inner enclosing keys that are included with everything below them, and the maximum of their lines.
+"""How many of the innermost enclosing keys can be included with their whole blocks, and a block's maximum of lines.
 
-Of outer keys, only the key's line is included.
+Only the lines of outer keys are included, without their blocks.
 """
 
 _SKIPPED = re.compile(r"\s*(#|$)")
 
 
 def fragment(lines: list[str], at: int, column: int) -> tuple[list[str], int]:
-    """Return the lines around index `at` that show its place in the tree, and its new index.
+    """Return the lines that determine the place of the line at index `at` in the tree, and that line's new index.
 
     An empty line counts as indented to `column`, from 1.
     """

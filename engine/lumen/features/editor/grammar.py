@@ -1,4 +1,4 @@
-"""The grammar of names in files: from a node's path to the kind of name in its key or value."""
+"""The grammar of names in files, which maps a node's path to the kind of name in its key or value."""
 
 from collections.abc import Mapping
 from functools import lru_cache
@@ -11,19 +11,16 @@ from lumen.project.words import ANYHOW
 MAX_REMEMBERED_PATHS = 50_000
 
 Table = Mapping[tuple[str, ...], NameKind]
-"""The kinds of names by the end of a path: `*` matches any key, and the indices of lists are left out."""
+"""The kinds of names by the end of a path; `*` matches any key, and list indices are left out."""
 
 
 def _pair_names() -> Table:
-    """Return the kinds of names in the key after a verb, as in `track: {head: false}`."""
+    """Return the kinds of names in the keys below verbs, as in `track: {head: false}`."""
     return {(verb.name, "*"): NameKind(verb.fields[0].names) for verb in VERBS if verb.pair}
 
 
 def _field_names() -> Table:
-    """Return the kinds of names in the values of verbs' fields.
-
-    The first field's value may also follow the verb directly.
-    """
+    """Return the kinds of names in verbs' fields; the first field's value can also follow the verb directly."""
     found: dict[tuple[str, ...], NameKind] = {}
     for verb in VERBS:
         for i, field in enumerate(verb.fields):
@@ -162,7 +159,7 @@ _DEFINING = {
     "body": frozenset(("joints", "postures", "tactile")),
 }
 _SAYINGS = (NameKind.BEHAVIOR, NameKind.STATE, NameKind.ROW, NameKind.LANGUAGE)
-"""The kinds of names in the keys of a file of sayings, from the outermost."""
+"""The kinds of names in the nested keys of a sayings file, the outermost first."""
 _DATA = {"behavior": ("data", "body"), "story": ("data", "body"), "lumen": (), "controller": ()}
 _OPAQUE = frozenset(("context", "types", "events", "phrases", "answers", "renamed"))
 """Top-level keys of a behaviour below which texts contain no names."""
@@ -187,7 +184,7 @@ def key_kind(kind: str, path: NodePath) -> NameKind | None:
 
 @lru_cache(maxsize=MAX_REMEMBERED_PATHS)
 def value_kind(kind: str, path: NodePath) -> NameKind | None:
-    """Return the kind of name in the text at a path, in a file of that kind; None if the text is not a name."""
+    """Return the kind of name in the text at a path, in a file of that kind; None if it contains no names."""
     steps = _steps(path)
     if kind == "behavior":
         if steps[:1] and steps[0] in _OPAQUE:
@@ -200,7 +197,7 @@ def value_kind(kind: str, path: NodePath) -> NameKind | None:
 
 
 def names_verb(kind: str, path: NodePath) -> bool:
-    """Return True if the key at a path may be a skill's name: a verb, or how a skill ends, is expected there."""
+    """Return True if the key at a path can be a skill's name, because a verb or a skill's outcome is expected there."""
     steps = [step for step in path[:-1] if isinstance(step, str)]
     if kind == "story":
         return steps[-1:] in (["skills"], ["did"]) or steps == ["robot"]
@@ -212,7 +209,7 @@ def names_verb(kind: str, path: NodePath) -> bool:
 
 
 def defines(kind: str, path: NodePath, what: NameKind) -> bool:
-    """Return True if a name of the kind `what` at that path defines its thing."""
+    """Return True if a name of the kind `what` at that path is a definition."""
     steps = _steps(path)
     if kind == "behavior" and what is NameKind.STATE:
         return steps[-2:-1] == ("states",)
@@ -233,9 +230,9 @@ def _steps(path: NodePath) -> tuple[str, ...]:
 
 
 def _found(table: Table, steps: tuple[str, ...], *, whole: bool = False) -> NameKind | None:
-    """Return the kind of the longest entry that the path ends with, or that is the `whole` path; None without one.
+    """Return the kind of the longest entry that matches the end of the path, or the `whole` path; None without one.
 
-    The longest one counts, since `on: {play: …}` is not a motion.
+    The longest one counts, because `on: {play: …}` is not a motion.
     """
     lengths = (len(steps),) if whole else (3, 2, 1)
     for length in lengths:

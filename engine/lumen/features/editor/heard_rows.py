@@ -13,7 +13,7 @@ _WORD = re.compile(r"[^\s|]+")
 
 
 def names_in(key: str) -> Iterator[tuple[str, int]]:
-    """Yield the names of phrases and answers in a key, each with its offset; none for `else` and `ENTRY.FIELD`."""
+    """Yield the names of phrases and answers in a key with their offsets; skip a lone `else` and `ENTRY.FIELD`."""
     found = [(word[0], word.start()) for word in _WORD.finditer(key)]
     if len(found) > 1 and found[0][0] in WAYS:
         found = found[1:]
@@ -21,7 +21,7 @@ def names_in(key: str) -> Iterator[tuple[str, int]]:
 
 
 def row_around(path: NodePath) -> str:
-    """Return the key of the row of `hears` that contains a node; empty if none does."""
+    """Return the key of the row of `hears` that contains a node; empty if there is none."""
     at = next((i for i in reversed(range(len(path) - 2)) if path[i] == "hears"), None)
     return "" if at is None else str(path[at + 1])
 
@@ -37,7 +37,7 @@ def is_phrase(kind: str, path: NodePath) -> bool:
 
 
 def texts_in(data: Any) -> Iterator[str]:
-    """Yield the phrases in the data under a name: for each language, or in each row of a table of answers."""
+    """Yield the phrases in the data of a name, in all languages or in all rows of an answers table."""
     match data:
         case str():
             yield data

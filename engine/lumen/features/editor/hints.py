@@ -1,4 +1,4 @@
-"""Hints beside times: an `after` is compared with its state's actions, a beat is given in seconds."""
+"""Hints beside times: `after` compared with its state's actions, and beats in seconds."""
 
 from collections.abc import Iterator
 from typing import NamedTuple
@@ -11,7 +11,7 @@ from lumen.project.project_folders import kind_of
 
 
 class Hint(NamedTuple):
-    """A text to show after a place in a file; `more` is a longer explanation."""
+    """A text that is shown after a place in a file; `more` is a longer explanation."""
 
     place: Place
     text: str
@@ -19,7 +19,7 @@ class Hint(NamedTuple):
 
 
 def hints(analysis: Analysis, file: str) -> Iterator[Hint]:
-    """Yield the hints of a behaviour's or motion's file; other files have none."""
+    """Yield the hints of a behaviour file or motion file; other files have none."""
     match kind_of(file):
         case "behavior":
             yield from _afters(analysis, file)
@@ -28,7 +28,7 @@ def hints(analysis: Analysis, file: str) -> Iterator[Hint]:
 
 
 def _afters(analysis: Analysis, file: str) -> Iterator[Hint]:
-    """Yield a hint for each `after`, which counts from its state's entry: a comparison with the state's `do`."""
+    """Yield a hint for each `after` that compares its time, counted from the state's entry, with the state's `do`."""
     draft, document = analysis.draft, analysis.documents.get(file)
     machine = draft.behaviors.get(file.removeprefix("behaviors/").removesuffix(".yaml"))
     for state in machine.states.values() if machine and document else ():
@@ -56,12 +56,12 @@ def _afters(analysis: Analysis, file: str) -> Iterator[Hint]:
 
 
 def _key(where: tuple[str | int, ...]) -> tuple[str | int, ...]:
-    """Return the path of the time under `after`, also for a candidate in a list below it."""
+    """Return the path of the time under `after` for a transition or for a candidate in its list."""
     return where[: max(i for i, step in enumerate(where) if step == "after") + 2]
 
 
 def _beats(analysis: Analysis, file: str) -> Iterator[Hint]:
-    """Yield the time of each beat [s] from the beginning of its list of keyframes; none without a tempo."""
+    """Yield a hint with the time of each beat [s] after the first; none without a valid tempo."""
     document = analysis.documents.get(file)
     tempo = document.data.get("tempo") if document and isinstance(document.data, dict) else None
     if document is None or not is_number(tempo) or tempo <= 0:

@@ -1,4 +1,4 @@
-"""Descriptions of the name under a cursor, in Markdown."""
+"""Descriptions of the name at the cursor, in Markdown."""
 
 from collections.abc import Sequence
 from math import degrees
@@ -20,11 +20,11 @@ from lumen.project.draft import ProjectDraft
 from lumen.project.project_folders import WORDS_FOLDER, kind_of
 
 MAX_PHRASES = 20
-"""The maximum number of phrases of a language that are shown."""
+"""The maximum number of phrases that are shown per language."""
 
 
 def hover(analysis: Analysis, file: str, line: int, column: int) -> str:
-    """Return the text for a line and column, from 1: about the name or key there and its findings; empty for none."""
+    """Return the text about the name or key at a line and column, from 1, and its findings; empty if there is none."""
     parts = [of_row_at(analysis, file, line, column)]
     use = analysis.index.at(file, line, column)
     if use:
@@ -46,7 +46,7 @@ def describe(analysis: Analysis, use: NameUse) -> str:
 
 
 def explain(diagnostic: Diagnostic) -> str:
-    """Return the meaning and importance of a finding, from its rule's page; empty without a rule."""
+    """Return the meaning and importance of a finding from its rule's page, else the rule's summary; empty if unknown."""
     code = codes().get(diagnostic.code)
     if code is None:
         return ""
@@ -96,7 +96,7 @@ def _facts(analysis: Analysis, use: NameUse) -> str:
 
 
 def _skill(draft: ProjectDraft, name: str) -> str:
-    """Return the description of a skill, its arguments, and its time."""
+    """Return a skill's description, arguments and time; empty if the skill is unknown."""
     if (row := draft.verbs.rows.get(name)) is None:
         return ""
     arguments = ", ".join(f"`{each}`" for each in row.arguments.get("properties", ()))
@@ -105,7 +105,7 @@ def _skill(draft: ProjectDraft, name: str) -> str:
 
 
 def _some(texts: Sequence[str]) -> str:
-    """Return the first `MAX_PHRASES` texts, and the number of the others."""
+    """Return the first `MAX_PHRASES` texts, and the number of those left out, if any."""
     more = len(texts) - MAX_PHRASES
     return ", ".join(texts[:MAX_PHRASES]) + (f" and {more} more" if more > 0 else "")
 
@@ -143,7 +143,7 @@ def _function(draft: ProjectDraft, name: str) -> str:
 
 
 def _described(analysis: Analysis, file: str, line: int, column: int) -> str:
-    """Return the schema's description of the key at a place, or sample sentences for the phrase; else empty."""
+    """Return the schema's description of the key there, or sample sentences for the phrase; empty if there is none."""
     document = analysis.documents.get(file)
     if document is None or PurePosixPath(file).suffix != ".yaml":
         return ""

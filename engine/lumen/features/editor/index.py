@@ -1,4 +1,4 @@
-"""The index of the names in a project's files and of their meanings."""
+"""The index of the names in a project's files, with their meanings."""
 
 from collections.abc import Iterator, Mapping
 from functools import cached_property
@@ -19,17 +19,17 @@ from lumen.project.outline import BehaviorOutline, OutlinedState
 from lumen.project.project_folders import kind_of
 
 WORDS_SCOPE = "words/"
-"""The beginning of the scope of a words file, before the file's name."""
+"""The prefix of a words file's scope, before the file's name."""
 
 WORD_KINDS: Mapping[NameKind, str] = {NameKind.PHRASE: "phrases", NameKind.ANSWERS: "answers"}
 """The kinds of names that words files define, each with the key above its definitions."""
 
 
 class NameIndex:
-    """All uses of names in a project, from its documents by file; files that can't be read have none.
+    """All uses of names in a project, from its readable documents by file.
 
-    `files` are the names of all files, including unreadable ones. Documents without a file come with Lumen: their names
-    are known, but have no place. `main` is the behaviour that the project runs.
+    `files` are the names of all files, including unreadable ones. Documents without a file come with Lumen; their names
+    have no place in the project. `main` is the behaviour that the project runs.
     """
 
     def __init__(self, documents: Mapping[str, Document], files: frozenset[str], main: str) -> None:
@@ -38,7 +38,7 @@ class NameIndex:
 
     @cached_property
     def uses(self) -> tuple[NameUse, ...]:
-        """All uses, in the order of the files; then the names of the files."""
+        """All uses in the order of the documents, followed by the names of the files."""
         found = list[NameUse]()
         for file, document in self.documents.items():
             uses = self._within(document)
@@ -53,7 +53,7 @@ class NameIndex:
     def _within(self, document: Document) -> tuple[NameUse, ...]:
         """Return the uses in one document.
 
-        They are computed again only if the document or the possible meanings of its names have changed.
+        They are computed again only after the document or the possible meanings of its names have changed.
         """
         scopes = tuple(self.scopes(document))
         states = [
@@ -76,43 +76,43 @@ class NameIndex:
         return frozenset(stem(file) for file in self.files if file.startswith(f"{folder}/") and file.endswith(".yaml"))
 
     def at(self, file: str, line: int, column: int) -> NameUse | None:
-        """Return the use at that line and column, from 1; the shortest if there are several, None if there is none."""
+        """Return the use at a line and column, from 1: the shortest if there are several, None if there is none."""
         here = [use for use in self.uses if use.place.file == file and use.text and covers(use.place, line, column)]
         return min(here, key=lambda use: len(use.text), default=None)
 
     def of(self, use: NameUse) -> list[NameUse]:
-        """Return all uses of the thing that this use names."""
+        """Return all uses with the same meaning as this use, including itself."""
         return [other for other in self.uses if other.thing == use.thing]
 
     def names(self, kind: NameKind, scope: str = "") -> list[str]:
-        """Return the names of all things of a kind that a scope defines, in the order of the files."""
+        """Return the names of a kind that a scope defines, in the order of the files."""
         return list(
             dict.fromkeys(use.name for use in self.uses if use.kind is kind and use.scope == scope and use.defines)
         )
 
     def known(self, kind: NameKind, scope: str) -> list[str]:
-        """Return the names that are known in a scope: its own, and those of the words files that a behaviour uses."""
+        """Return the names known in a scope: its own, and for phrases and answers those of the words files it uses."""
         scopes = (scope, *self.words.get(scope, ())) if kind in WORD_KINDS else (scope,)
         return list(dict.fromkeys(name for each in scopes for name in self.names(kind, each)))
 
     def home(self, kind: NameKind, name: str, scope: str) -> str:
-        """Return the scope that defines a name of a behaviour: its own, or that of a words file that it uses.
+        """Return the scope that defines a name in a behaviour: its own, or that of a words file it uses.
 
-        A name that nothing defines belongs to the behaviour's own scope.
+        An undefined name belongs to the behaviour's own scope.
         """
         if kind not in WORD_KINDS or name in _entries(self.data(scope), kind):
             return scope
         return next((w for w in self.words.get(scope, ()) if name in _entries(self.data(w), kind)), scope)
 
     def row_kind(self, name: str, scope: str) -> NameKind:
-        """Return the kind of a name in a key of `hears`: answers or phrases; phrases if nothing has that name."""
+        """Return the kind of a name in a key of `hears`: phrases or answers; phrases if the name is undefined."""
         found = (
             k for k in WORD_KINDS for s in (scope, *self.words.get(scope, ())) if name in _entries(self.data(s), k)
         )
         return next(found, NameKind.PHRASE)
 
     def data(self, scope: str) -> Any:
-        """Return the data of the behaviour or words file of that scope; None without one."""
+        """Return the data of the behaviour or words file with that scope; None if there is none."""
         document = self.documents.get(f"behaviors/{scope}.yaml")
         return document.data if document else None
 
@@ -120,7 +120,7 @@ class NameIndex:
     def words(self) -> Mapping[str, tuple[str, ...]]:
         """The scopes of the words files that each behaviour uses.
 
-        The words file that comes with Lumen is the last, so that all others take precedence over it.
+        The words file that comes with Lumen is last, so all others take precedence over it.
         """
         shipped = {WORDS_SCOPE + stem(file) for file in self.documents.keys() - self.files}
         return {
@@ -131,13 +131,13 @@ class NameIndex:
 
     @cached_property
     def own_bodies(self) -> frozenset[str]:
-        """The names of the robot model in lumen.yaml and of the model that it is based on."""
+        """The names of the robot model in lumen.yaml and of its base model."""
         robot = self._data("lumen.yaml").get("robot")
         model = str(robot.get("model", "")) if isinstance(robot, dict) else ""
         return frozenset((model, str(self._data(f"models/{model}.yaml").get("like", model))))
 
     def other_body(self, file: str) -> str:
-        """Return the model whose joints and postures a file names; empty if it is the project's own robot's."""
+        """Return the model whose joints and postures a file names; empty for the project's own robot."""
         kind, folder = kind_of(file), PurePosixPath(file).parent.name
         model = stem(file) if kind == "body" else folder if kind == "motion" and file.count("/") > 1 else ""
         return "" if model in self.own_bodies else model
@@ -147,7 +147,7 @@ class NameIndex:
         return document.data if document and isinstance(document.data, dict) else {}
 
     def scopes(self, document: Document) -> Iterator[str]:
-        """Yield the scopes of the names in a document: for a file of sayings each of its behaviours, else one."""
+        """Yield the scopes of the names in a document: all behaviours of a sayings file, one scope for other files."""
         if kind_of(document.file) == "sayings":
             yield from map(str, document.data if isinstance(document.data, dict) else ())
         else:
@@ -156,12 +156,12 @@ class NameIndex:
     def behavior(self, file: str) -> str:
         """Return the scope of the names in a file.
 
-        A story has that of the behaviour that it plays; one robot's version of a motion has its own, the file's path.
+        A story has the scope of its behaviour. One robot's version of a motion has the file's path as its scope.
         """
         if kind_of(file) == "words":
             return WORDS_SCOPE + stem(file)
         if kind_of(file) == "motion" and file.count("/") > 1:
-            return file  # one robot's version, besides a shared one of that name
+            return file  # one robot's version; a shared motion can have the same name
         if kind_of(file) != "story":
             return stem(file)
         document = self.documents.get(file)
@@ -201,7 +201,7 @@ class _Reader:
                 yield from self.alias(path, value)
 
     def keyed(self, kind: NameKind, path: NodePath) -> Iterator[NameUse]:
-        """Yield the uses of names in the key at `path`, which is a name of the kind `kind`."""
+        """Yield the uses of names in the key at `path`, which is of the kind `kind`."""
         key = str(path[-1])
         if kind is NameKind.ROW:
             yield from self.row(path)
@@ -211,7 +211,7 @@ class _Reader:
             yield from self.named(kind, path, key=True)
 
     def named(self, kind: NameKind, path: NodePath, *, key: bool = False) -> Iterator[NameUse]:
-        """Yield the use of the name that a whole key or value is; none for a field."""
+        """Yield the use of the name that is a whole key or value; none for a field or a name in another form."""
         whole = str(path[-1]) if key else str(self.document.value(path))
         text = context_key(whole) if kind is NameKind.CONTEXT else whole
         place = self.lines.part(self.document.place(path, key=key), whole, 0, len(text))
@@ -251,7 +251,7 @@ class _Reader:
                 yield self.use(part.kind, part.text, part.text, here)
 
     def target(self, path: NodePath, value: str) -> Iterator[NameUse]:
-        """Yield the uses of states in a target or in a state's name in a story; each step of a dotted name is one."""
+        """Yield the uses of states in a target, or in a state's name in a story: one for each step of a dotted name."""
         if self.kind == "story":
             yield from self.segments(path, value, value, 0, self._named_state)
         elif self.outline:
@@ -267,7 +267,7 @@ class _Reader:
     def segments(
         self, path: NodePath, value: str, dotted: str, offset: int, find: Any, *, key: bool = False
     ) -> Iterator[NameUse]:
-        """Yield a use for each step of a dotted name that leads to a state; an id may contain dots itself.
+        """Yield a use for each step of a dotted name that leads to a state; an id can contain dots itself.
 
         `dotted` begins at `offset` in `value`; `find` returns a name's state or None.
         """
@@ -303,13 +303,13 @@ class _Reader:
 
 
 def stem(file: str) -> str:
-    """Return the name of the thing that a file defines."""
+    """Return the name that a file defines: its own without the suffix."""
     name = PurePosixPath(file).name
     return name.removesuffix(SCHEMA_SUFFIX) if name.endswith(SCHEMA_SUFFIX) else PurePosixPath(file).stem
 
 
 def _entries(data: Any, kind: NameKind) -> Any:
-    """Return the names of a kind that a file's data defines."""
+    """Return the names of phrases or answers that a file's data defines, by `kind`; empty if there are none."""
     table = data.get(WORD_KINDS[kind]) if isinstance(data, dict) else None
     return table if isinstance(table, dict) else ()
 
@@ -322,7 +322,7 @@ def _words(data: Any) -> tuple[str, ...]:
 
 
 def _state_at(path: NodePath) -> str:
-    """Return the path of the innermost state around a node, or of the state whose key it is."""
+    """Return the path of the innermost state that contains a node, or whose key the node is; empty if there is none."""
     steps, at = [], 0
     while at + 1 < len(path) and path[at] == "states":
         steps.append(str(path[at + 1]))
@@ -331,9 +331,9 @@ def _state_at(path: NodePath) -> str:
 
 
 def _outline(file: str, document: Document) -> BehaviorOutline | None:
-    """Return the states of a behaviour's file, which may have errors.
+    """Return the outline of a behaviour file, which may have errors.
 
-    Return None for other files, and if the states can't be determined.
+    Return None for other files, or if the states can't be determined.
     """
     if kind_of(file) != "behavior":
         return None
@@ -344,7 +344,7 @@ def _outline(file: str, document: Document) -> BehaviorOutline | None:
 
 
 def _states(data: Any) -> dict[str, Any]:
-    """Return the parts of a state's data that the outline reads; parts of a wrong form are left out."""
+    """Return the fields of a state's data that the outline reads, without malformed ones."""
     known = data if isinstance(data, dict) else {}
     children, name, kind = known.get("states"), known.get("id"), known.get("type")
     state: dict[str, Any] = {}

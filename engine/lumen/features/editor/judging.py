@@ -1,4 +1,4 @@
-"""Checks projects in a separate process: Python runs one thread at a time, and answers must not wait for findings."""
+"""Checks projects in a separate process, because Python runs one thread at a time and answers must not wait."""
 
 import asyncio
 import os
@@ -16,7 +16,7 @@ COMMAND = (sys.executable, "-P", "-m", "lumen.features.editor.judging")
 
 
 class Judge:
-    """Checks one project at a time in a process of its own, and ends a check as soon as there is a newer text.
+    """Checks one project at a time in a separate process, and ends a check as soon as there is a newer text.
 
     The process starts with the first request, and again after a check that ended it.
     """
@@ -27,7 +27,7 @@ class Judge:
         self._current = False
 
     async def judge(self, analysis: Analysis) -> Judgement | None:
-        """Return the findings of a project; None if a newer request came during the check, or if the process ended."""
+        """Return a project's findings; None if a newer request arrived during the check, or if the process ended."""
         self.outdated()
         self._current = True
         question = self._number, analysis
@@ -39,7 +39,7 @@ class Judge:
         return found
 
     def outdated(self) -> None:
-        """End the check in progress, whose text is outdated."""
+        """End the check in progress, if any, because its text is outdated."""
         self._number += 1
         if self._current:  # the process may still be reading the request, so the event loop must not wait for it
             self._current = False
@@ -51,11 +51,11 @@ class Judge:
 
 
 class OutdatedError(Exception):
-    """A newer request came during the check of a project."""
+    """A newer request arrived during the check of a project."""
 
 
 class JudgingQuestions:
-    """The numbered requests of a server; one without an analysis only makes earlier requests outdated."""
+    """The server's numbered requests; a request without an analysis only makes earlier requests outdated."""
 
     def __init__(self, pipe: AnswerPipe) -> None:
         self._pipe = pipe
@@ -63,7 +63,7 @@ class JudgingQuestions:
         self._waiting: SimpleQueue[tuple[int, Analysis]] = SimpleQueue()
 
     def answer(self) -> None:
-        """Answer requests until the server ends or closes the pipe, which ends this process at once."""
+        """Answer requests until the server ends or closes the pipe, which ends this process immediately."""
         WatchedThread("questions", self._read).start()
         while True:
             self._pipe.answer(partial(self._judged, *self._waiting.get()))
@@ -77,7 +77,7 @@ class JudgingQuestions:
                     self._waiting.put((number, analysis))
         except EOFError:
             os._exit(0)
-        except BaseException:  # a fault of ours: end, since the server waits for an answer
+        except BaseException:  # end after an internal error, because the server waits for an answer
             traceback.print_exc()
             os._exit(1)
 

@@ -1,4 +1,4 @@
-"""The language server: it keeps the open projects and publishes their findings."""
+"""The language server, which keeps the open projects and publishes their findings."""
 
 import asyncio
 from collections.abc import Callable
@@ -90,12 +90,12 @@ class LanguageServer(pygls_server.LanguageServer):
         return analysis, file, line, column
 
     def asked(self, params: Any, answer: Callable[[Analysis, str, int, int], T]) -> T | None:
-        """Return what `answer` returns for the requested position; None if the file belongs to no project."""
+        """Return the result of `answer` for the requested position; None if the file belongs to no project."""
         found = self.at(params.text_document.uri, params.position)
         return answer(*found) if found else None
 
     def written(self, uri: str, *, at_once: bool = False) -> None:
-        """Keep the new text of an open file, and check its project after a pause in typing, or now if `at_once`."""
+        """Store the new text of an open file, and check its project after a pause in typing, or now if `at_once`."""
         path = Path(path_of(uri))
         self.projects.write(path, self.workspace.get_text_document(uri).source)
         if root := root_of(path):
@@ -103,7 +103,7 @@ class LanguageServer(pygls_server.LanguageServer):
         self.check(path, at_once=at_once)
 
     def check(self, path: Path, *, at_once: bool = False) -> None:
-        """Check a file's project after a pause in typing, or now if `at_once`; a check in progress starts again."""
+        """Check a file's project after a pause in typing, or now if `at_once`; a check in progress is restarted."""
         if (root := root_of(path)) is None:
             return
         self.judge(root).outdated()

@@ -1,4 +1,4 @@
-"""Lenses: clickable lines above the text that run a story, play a motion, or show the transitions to a state."""
+"""Lenses: clickable lines above the text, to run a story, play a motion, or show the transitions to a state."""
 
 from collections.abc import Collection, Iterator
 from typing import NamedTuple
@@ -14,20 +14,20 @@ ACTIVE_NOW = "● active now"
 
 
 class Lens(NamedTuple):
-    """A title above a place in the file."""
+    """A title that is shown above a place in the file."""
 
     place: Place
     title: str
     command: str = ""
-    """The name of the editor's command for a click; empty without one."""
+    """The name of the editor's command for a click; empty if there is none."""
     name: str = ""
-    """The name of the story, motion or state."""
+    """The name of the story, motion or state; empty for an active state."""
     places: tuple[Place, ...] = ()
-    """The places of the transitions to the state."""
+    """The places of the transitions to the state; empty for other lenses."""
 
 
 def lenses(analysis: Analysis, file: str, active: Collection[str] = ()) -> Iterator[Lens]:
-    """Yield the lenses of a file; `active` are the names of the active states of the project's running exhibition."""
+    """Yield a file's lenses; `active` are the names of the active states in the project's running exhibition."""
     top = Place(file)
     match kind_of(file):
         case "story":
@@ -39,7 +39,7 @@ def lenses(analysis: Analysis, file: str, active: Collection[str] = ()) -> Itera
 
 
 def active_places(analysis: Analysis, active: Collection[str]) -> list[Place]:
-    """Return the places where the active states are defined, in the behaviour that the project runs."""
+    """Return the places that define the active states in the behaviour that the project runs."""
     settings = analysis.settings.settings
     file = f"behaviors/{settings.behavior}.yaml" if settings else ""
     return [each.place for each in lenses(analysis, file, active) if each.title == ACTIVE_NOW]

@@ -1,4 +1,4 @@
-"""Links from names to files: motions, stories, behaviours, words, controllers, robots, schemas."""
+"""Links from names to the files that define them, such as motions, stories and behaviours."""
 
 from collections.abc import Iterator
 from typing import NamedTuple

@@ -37,9 +37,9 @@ class DocumentText:
         return self._lines.offset(line, column)
 
     def part(self, place: Place, source: str, offset: int, length: int) -> Place | None:
-        """Return the place of a part of the scalar at `place`; None if the file contains the part in another form.
+        """Return the place of `length` characters from `offset` in `source`, the value of the scalar at `place`.
 
-        The part has `length` characters from `offset` in the scalar's value `source`.
+        Return None if the file contains them in another form.
         """
         start, end = self.offset(place.line, place.column), self.offset(place.end_line, place.end_column)
         raw, word = self.text[start:end], source[offset : offset + length]
@@ -57,14 +57,14 @@ class DocumentText:
         return Place(self.document.file, line, column, line, column + length)
 
     def scalar(self, path: NodePath, *, key: bool = False) -> Place | None:
-        """Return the place of a key or text, without its quotes; None if the file contains it in another form."""
+        """Return the place of a key or value without its quotes; None if the file contains it in another form."""
         place = self.document.place(path, key=key)
         value = path[-1] if key else self.document.value(path)
         return self.part(place, str(value), 0, len(str(value)))
 
 
 def key_at(document: Document, line: int, column: int) -> NodePath:
-    """Return the path of the key at a line and column, from 1; empty for none."""
+    """Return the path of the key at a line and column, from 1; empty if there is none."""
     found: NodePath = ()
     for path, span in document.spans.items():
         if span.key and covers(span.key, line, column):
@@ -73,9 +73,9 @@ def key_at(document: Document, line: int, column: int) -> NodePath:
 
 
 def in_expression(source: str, base: int = 0) -> Iterator[NameInText]:
-    """Yield the context keys, phrases, tables, states and functions in an expression; none if it is invalid.
+    """Yield the names of context keys, phrases, tables, states and functions in an expression; none if it is invalid.
 
-    `base` is added to their offsets.
+    `base` is added to each offset.
     """
     yield from (name._replace(offset=base + name.offset) for name in _named(source))
 

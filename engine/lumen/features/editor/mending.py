@@ -1,6 +1,6 @@
-"""Repairs a file that is invalid YAML while it is being written, by removing the lines that prevent reading it.
+"""Repairs a file that is invalid YAML while it is being written, by removing the lines that make it unreadable.
 
-All other lines keep their numbers, so that findings about them have the right place.
+All other lines keep their numbers, so findings about them have the right place.
 """
 
 import re
@@ -11,8 +11,7 @@ from lumen.language.text_lines import lines_of
 from lumen.project.yaml_reader import parse
 
 MAX_CUTS = 8
-"""The most faulty lines that are removed with the blocks below them; then a whole enclosing block is removed instead.
-"""
+"""The maximum number of faulty lines removed with their blocks; beyond it, one enclosing block is removed instead."""
 
 _WORD = re.compile(r"[^\s\"'`\[\]{},:#]+")
 _QUOTED = re.compile(r"""(?:^|(?<=[\s\[{,:(]))(?P<text>"(?:[^"\\]|\\.)*(?:"|$)|'(?:[^']|'')*(?:'|$))|(?:^|\s)\#.*""")
@@ -30,7 +29,7 @@ class MendedText(NamedTuple):
 
 
 def mended(file: str, text: str) -> MendedText | None:
-    """Return the text without the lines that prevent reading it; None if removing lines does not help."""
+    """Return the text without the lines that make it unreadable; None if removing lines does not help."""
     lines, cut = lines_of(text), set[int]()
     first: int | None = None
     for _ in range(MAX_CUTS):
@@ -47,7 +46,7 @@ def mended(file: str, text: str) -> MendedText | None:
 
 
 def open_quote(line: str) -> bool:
-    """Return True if a quote is opened in a line and not closed there."""
+    """Return True if a line opens a quote and does not close it."""
     return any(
         len(text) == 1 or text[0] != text[-1] or text.endswith('\\"')
         for found in _QUOTED.finditer(line)
@@ -56,7 +55,7 @@ def open_quote(line: str) -> bool:
 
 
 def _fault(file: str, lines: list[str], cut: set[int]) -> int | None:
-    """Return the index of the line that most likely prevents reading the others, None if they can be read."""
+    """Return the index of the line that most likely makes the others unreadable; None if they can be read."""
     document, found = parse(file, _kept(lines, cut).encode("utf-8", "surrogatepass"))
     if document is not None or not found:
         return None
