@@ -161,7 +161,7 @@ class _Completion:
                 yield from (f"{loop['as']}.{key}" for key in keys)
 
     def lists(self) -> Mapping[str, Any]:
-        """Return the file's own lists by name, with those of its words files, or for a words file those of its users."""
+        """Return the file's lists by name, with those of its words files, or for a words file those of its users."""
         found: dict[str, Any] = {}
         users = [name for name, words in self.index.words.items() if self.scope in (name, *words)]
         for scope in dict.fromkeys((self.scope, *(s for name in users for s in (name, *self.index.words[name])))):

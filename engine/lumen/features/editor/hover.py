@@ -46,7 +46,7 @@ def describe(analysis: Analysis, use: NameUse) -> str:
 
 
 def explain(diagnostic: Diagnostic) -> str:
-    """Return the meaning and importance of a finding from its rule's page, else the rule's summary; empty if unknown."""
+    """Return a finding's meaning and importance from its rule's page, else the rule's summary; empty without a rule."""
     code = codes().get(diagnostic.code)
     if code is None:
         return ""

@@ -1,4 +1,4 @@
-"""The uses of names in a project's files, and the kinds of things that they name."""
+"""The kinds of names in a project's files, and their uses."""
 
 from enum import StrEnum
 from typing import NamedTuple
@@ -18,7 +18,7 @@ from lumen.project.project_folders import (
 
 
 class NameKind(StrEnum):
-    """The kinds of things that names refer to; `EXPRESSION`, `TEMPLATE`, `FIELD` and `ROW` contain other names."""
+    """The kinds of names; `EXPRESSION`, `TEMPLATE`, `FIELD` and `ROW` are texts that contain other names."""
 
     STATE = "state"
     CONTEXT = "context key"
@@ -58,35 +58,35 @@ KIND_FOLDERS = {
     NameKind.MESSAGE: MESSAGES,
     NameKind.SKILL: SKILLS,
 }
-"""The kinds that are files, with their folders."""
+"""The kinds of names that files define, with the files' folders."""
 
 SCOPED_KINDS = frozenset((NameKind.STATE, NameKind.CONTEXT, NameKind.PHRASE, NameKind.ANSWERS, NameKind.POSE))
-"""The kinds whose names are valid within one file only."""
+"""The kinds whose names are valid only in the scope of one file."""
 
 BODY_KINDS = frozenset((NameKind.JOINT, NameKind.POSTURE))
 """The kinds whose names belong to one robot's body."""
 
 
 class NameUse(NamedTuple):
-    """A use of a name."""
+    """A use or definition of a name."""
 
     kind: NameKind
     scope: str
     """The behaviour or file in which the name is valid; empty for the whole project."""
     name: str
-    """The thing's name; for a state its path, however it is written."""
+    """The name itself; for a state its path, however it is written."""
     text: str
     """The name as it is written; empty if it is not written in the project."""
     place: Place
     defines: bool = False
-    """True if this use defines the thing."""
+    """True if this use is a definition."""
 
     @property
     def thing(self) -> tuple[NameKind, str, str]:
-        """The kind, scope and name of the thing, which all uses of its name share."""
+        """The kind, scope and name, which all uses with the same meaning share."""
         return self.kind, self.scope, self.name
 
 
 def covers(place: Place, line: int, column: int) -> bool:
-    """Return True if a cursor at that line and column, from 1, is in the place or directly behind it."""
+    """Return True if a cursor at a line and column, from 1, is in the place or directly after it."""
     return (place.line, place.column) <= (line, column) <= (place.end_line, place.end_column)

@@ -1,4 +1,4 @@
-"""The projects with open files, with their unsaved texts."""
+"""The projects with open files, including unsaved texts."""
 
 from pathlib import Path
 
@@ -9,7 +9,7 @@ from lumen.project.project_folders import MAIN_FILE, kind_of
 
 
 class OpenProjects:
-    """The unsaved texts by path, and the projects' analyses, each of which is kept until one of its files changes."""
+    """The unsaved texts by path, and the projects' analyses, each kept until one of the project's files changes."""
 
     def __init__(self) -> None:
         self._texts: dict[Path, str] = {}
@@ -17,24 +17,24 @@ class OpenProjects:
         self._before: dict[Path, Analysis] = {}
 
     def write(self, path: Path, text: str) -> None:
-        """Set the present text of an open file."""
+        """Set the current text of an open file."""
         self._texts[path] = text
         self.forget(path)
 
     def close(self, path: Path) -> None:
-        """Forget the unsaved text of a closed file: the file on disk counts again."""
+        """Discard the unsaved text of a closed file; from now on the file on disk counts."""
         self._texts.pop(path, None)
         self.forget(path)
 
     def forget(self, path: Path) -> None:
-        """Discard the analysis of a changed file's project; the next analysis uses it only as the earlier one."""
+        """Mark the analysis of a changed file's project as outdated; the next analysis is based on it."""
         if root := root_of(path):
             last = self._analyses.pop(root, None)
             if last is not None:
                 self._before[root] = last
 
     def analysis(self, root: Path) -> Analysis:
-        """Return the analysis of the project in that folder with its unsaved texts."""
+        """Return the analysis of the project in the folder `root`, including unsaved texts."""
         if root not in self._analyses:
             files = read_files(root)
             for path, text in self._texts.items():
@@ -49,7 +49,7 @@ class OpenProjects:
         return list(dict.fromkeys(root for path in list(self._texts) if (root := root_of(path))))
 
     def at(self, path: Path) -> tuple[Analysis, str]:
-        """Return the project of a file, and the file's path in it.
+        """Return the analysis of a file's project, and the file's path in the project.
 
         Raises UsageError if the file belongs to no project.
         """
@@ -60,7 +60,7 @@ class OpenProjects:
 
 
 def root_of(path: Path) -> Path | None:
-    """Return the nearest folder above a file that has a lumen.yaml, None without one."""
+    """Return the nearest folder above a file that contains a lumen.yaml; None if there is none."""
     return next((folder for folder in path.parents if (folder / MAIN_FILE).is_file()), None)
 
 

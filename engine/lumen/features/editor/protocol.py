@@ -34,12 +34,12 @@ _ICONS = {
 
 
 def icon(kind: NameKind) -> lsp.SymbolKind:
-    """Return the icon that an editor draws for a name of that kind."""
+    """Return the symbol kind by which an editor selects the icon for a name."""
     return _ICONS.get(kind, lsp.SymbolKind.Key)
 
 
 class ProtocolEncoder:
-    """Encodes results for one client; `codec` converts columns to the client's units."""
+    """Encodes a project's results for one client; `codec` converts columns to the client's units."""
 
     def __init__(self, analysis: Analysis, codec: PositionCodec) -> None:
         self.analysis, self._codec = analysis, codec
@@ -109,7 +109,7 @@ class ProtocolEncoder:
         ]
 
     def renaming(self, renaming: Renaming) -> lsp.WorkspaceEdit:
-        """Return the protocol's edits: first those of the files by their present names, then the file's renaming."""
+        """Return the protocol's edits: those of the files by their current names, then the file's renaming, if any."""
         changes = self.edits(renaming.edits)
         if renaming.moved:
             old, new = renaming.moved

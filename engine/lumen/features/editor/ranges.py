@@ -1,6 +1,7 @@
 """Converts between Lumen's places and the protocol's positions.
 
-Lumen counts lines and columns of characters from 1, the protocol from 0, with columns in the client's units.
+Lumen counts lines and characters from 1. The protocol counts lines and columns from 0, with columns in the client's
+units.
 """
 
 from urllib.parse import unquote, urlsplit
@@ -14,7 +15,7 @@ from lumen.lint.fixes import FileText
 
 
 class Ranges:
-    """Converts the places of one file; `codec` counts columns in the client's units, by default UTF-16."""
+    """Converts the places of one file; `codec` counts columns in the client's units."""
 
     def __init__(self, text: FileText, codec: PositionCodec) -> None:
         self._text, self._codec = text, codec
@@ -28,12 +29,12 @@ class Ranges:
         return lsp.Position(line - 1, self._codec.client_num_units(before))
 
     def range(self, place: Place) -> lsp.Range:
-        """Return the protocol's range of a place; it is empty if the place ends before it begins."""
+        """Return the protocol's range of a place, an empty one if the place ends before it begins."""
         start, end = self.position(place.line, place.column), self.position(place.end_line, place.end_column)
         return lsp.Range(start, max(start, end, key=lambda p: (p.line, p.character)))
 
     def place(self, position: lsp.Position) -> tuple[int, int]:
-        """Return the line and column, from 1, of a client's position."""
+        """Return the line and column, from 1, of a client's position; the line's end if the position is beyond it."""
         text = self._text.line(position.line + 1)
         units, column = 0, 0
         while column < len(text) and units < position.character:
@@ -43,6 +44,6 @@ class Ranges:
 
 
 def path_of(uri: str) -> str:
-    """Return the local path of a `file:` URI, empty for any other."""
+    """Return the local path of a `file:` URI; empty for other URIs."""
     parts = urlsplit(uri)
     return url2pathname(unquote(parts.path)) if parts.scheme == "file" else ""

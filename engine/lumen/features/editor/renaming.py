@@ -1,4 +1,4 @@
-"""Renames a thing everywhere in the project."""
+"""Renames a name everywhere in the project."""
 
 import re
 from collections.abc import Sequence
@@ -41,7 +41,7 @@ _NAMES = {
     NameKind.SKILL: (r"[a-z][a-z0-9_]*", "made of small letters, digits and `_`, and begin with a letter"),
     NameKind.STORY: (r"[A-Za-z_][\w-]*", "made of letters, digits, `_` and `-`, and begin with a letter or `_`"),
 }
-"""The kinds that can be renamed, with the form of their names."""
+"""The kinds of names that can be renamed, with the pattern of a new name and its description."""
 _RESERVED = re.compile(r"(?i:null|true|false|yes|no|on|off|y|n|~|any)|[\d.+-].*")
 
 
@@ -60,10 +60,10 @@ def renamable(analysis: Analysis, file: str, line: int, column: int) -> NameUse 
 
 
 def rename(analysis: Analysis, use: NameUse, name: str) -> Renaming:
-    """Return the renaming of the thing that a use names.
+    """Return the renaming of all uses that are written like `use` and have its meaning.
 
-    A state keeps an `id` that differs from its key. Raises UsageError if the new name is invalid or taken, if the thing
-    must keep its name, or if a file is invalid YAML. Errors that the renaming causes are left to `refuse_harm`.
+    A state keeps an `id` that differs from its key. Raises UsageError if the new name is invalid or taken, if the old
+    name is fixed, or if a file is invalid YAML. `refuse_harm` checks for errors that the renaming causes.
     """
     if analysis.broken:
         said = next(d for each in analysis.broken.values() for d in each.diagnostics)
@@ -103,7 +103,7 @@ def applied(analysis: Analysis, renaming: Renaming) -> Analysis:
 
 def refuse_harm(before: Sequence[Diagnostic], after: Sequence[Diagnostic]) -> None:
     """Raise UsageError if the project has more findings, or more errors, after a renaming than before."""
-    # A skill's function still has the old name; lint reports that, but the editor changes no Python.
+    # A skill's function still has the old name. Lint reports that, but the editor does not change Python.
     after = [each for each in after if not each.place.file.endswith(".py")]
     # An error hides other findings, such as unused names, so the number of findings may fall despite a new error.
     if len(after) > len(before) or _errors(after) > _errors(before):

@@ -1,4 +1,4 @@
-"""The states of the open projects' exhibitions that run on this machine."""
+"""The active states of the open projects' exhibitions on this machine."""
 
 from collections.abc import Callable, Iterable
 from pathlib import Path
@@ -16,8 +16,8 @@ ASK_EVERY, ANSWER_TIMEOUT = 1.0, 2.0
 class RunningExhibitions:
     """Requests the active states of the open projects' running exhibitions.
 
-    `roots` returns the projects' folders; `changed` is called with a folder whenever its exhibition's states have
-    changed.
+    `roots` returns the projects' folders. `changed` is called with a folder when its exhibition's active states
+    change.
     """
 
     def __init__(self, roots: Callable[[], Iterable[Path]], changed: Callable[[Path], None]) -> None:
@@ -27,7 +27,7 @@ class RunningExhibitions:
         self._over = Event()
 
     def active(self, root: Path) -> tuple[str, ...]:
-        """Return the names of the active states of a project's exhibition; none if it is not running."""
+        """Return the names of the active states in a project's exhibition; empty if it is not running."""
         return self._active.get(root, ())
 
     def follow(self) -> None:
@@ -42,7 +42,7 @@ class RunningExhibitions:
             reached.bus.close()
 
     def close(self) -> None:
-        """End `follow` at its next round."""
+        """End `follow` before its next round."""
         self._over.set()
 
     def _asked(self, root: Path) -> tuple[str, ...]:

@@ -1,4 +1,4 @@
-"""The keys, values and descriptions of a node by the JSON Schema of its kind of file."""
+"""A node's keys, values and description from the JSON Schema of its kind of file."""
 
 from collections.abc import Iterator, Mapping
 from functools import lru_cache
@@ -19,9 +19,9 @@ def _root(kind: str, verbs: OwnVerbs) -> Mapping[str, Any]:
 
 
 def schemas_at(kind: str, path: NodePath, verbs: OwnVerbs = NO_VERBS) -> list[Mapping[str, Any]]:
-    """Return all schemas that may apply to the node at a path, whichever branches are chosen, the nearest first.
+    """Return all schemas that can apply to the node at a path, from all branches, the nearest first.
 
-    `verbs` are those that the project declares.
+    `verbs` are the verbs that the project declares.
     """
     root = _root(kind, verbs)
     found = list(_here(root, root))
@@ -31,7 +31,7 @@ def schemas_at(kind: str, path: NodePath, verbs: OwnVerbs = NO_VERBS) -> list[Ma
 
 
 def keys_at(kind: str, path: NodePath, verbs: OwnVerbs = NO_VERBS) -> dict[str, Mapping[str, Any]]:
-    """Return the keys that a map at that path may have, each with its schema."""
+    """Return the possible keys of a map at a path, each with its schema."""
     found: dict[str, Mapping[str, Any]] = {}
     for schema in schemas_at(kind, path, verbs):
         for name, inner in schema.get("properties", {}).items():
@@ -41,7 +41,7 @@ def keys_at(kind: str, path: NodePath, verbs: OwnVerbs = NO_VERBS) -> dict[str, 
 
 
 def values_at(kind: str, path: NodePath, verbs: OwnVerbs = NO_VERBS) -> list[str]:
-    """Return the values that the schemas list for the node at a path, as written in YAML."""
+    """Return the values that the schemas list for the node at a path, as they are written in YAML."""
     values: list[str] = []
     for schema in schemas_at(kind, path, verbs):
         values += map(_written, schema.get("enum", ()))
@@ -51,7 +51,7 @@ def values_at(kind: str, path: NodePath, verbs: OwnVerbs = NO_VERBS) -> list[str
 
 
 def description_at(kind: str, path: NodePath, verbs: OwnVerbs = NO_VERBS) -> str:
-    """Return the schemas' description of a node, with its default; empty without one."""
+    """Return the schemas' description of a node, with its default if any; empty if there is no description."""
     schemas = schemas_at(kind, path, verbs)
     text = next((s["description"] for s in schemas if "description" in s), "")
     default = next((s["default"] for s in schemas if "default" in s), None)
@@ -63,7 +63,7 @@ def _written(value: Any) -> str:
 
 
 def _here(schema: Any, root: Mapping[str, Any], depth: int = 0) -> Iterator[Mapping[str, Any]]:
-    """Yield a schema, and all schemas that it combines or refers to."""
+    """Yield a schema and all schemas that it combines or refers to."""
     if not isinstance(schema, dict) or depth > 8:
         return
     yield schema

@@ -1,4 +1,4 @@
-"""Sample sentences in hover texts, for a row of `hears` or a phrase, with the values of `heard` that they set."""
+"""Sample sentences in hover texts for a row of `hears` or a phrase, with the values of `heard` that they set."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import islice
@@ -17,7 +17,7 @@ from lumen.talk.patterns import forms, slots_of
 from lumen.talk.sample_sentences import SampleSentence, of_phrase, of_row
 
 MAX_SENTENCES, MAX_TRIED = 4, 40
-"""The maximum number of sentences that are shown for a row or phrase, and of those that are tried for a row."""
+"""The maximum number of sentences that are shown for a row or phrase, and the maximum that are tried for a row."""
 _TAKEN = {
     "": "taken if one of its phrases is said",
     "not": "taken if the visitor refuses it",
@@ -27,7 +27,7 @@ _TAKEN = {
 
 
 def of_row_at(analysis: Analysis, file: str, line: int, column: int) -> str:
-    """Describe the row of `hears` whose key is at that place, with sample sentences; empty if there is no such key."""
+    """Return the description of the row of `hears` whose key is there, with sample sentences; empty if there is none."""
     document, machine = analysis.documents.get(file), analysis.draft.behaviors.get(stem(file))
     at = document and key_at(document, line, column)
     if not at or machine is None or kind_of(file) != "behavior" or at[-2:-1] != ("hears",):
@@ -42,14 +42,14 @@ def of_row_at(analysis: Analysis, file: str, line: int, column: int) -> str:
 
 
 def of_patterns(draft: ProjectDraft, phrases: Iterable[str]) -> Iterator[str]:
-    """Yield a line with a sample sentence for each of the first phrases that are patterns."""
+    """Yield a line with a sample sentence for up to MAX_SENTENCES phrases that are patterns."""
     patterns = (text for text in phrases if len(forms(text)) > 1 or any(slots_of(text)))
     sentences = (next(of_phrase(text, _lists(draft)), None) for text in patterns)
     yield from _listed(islice(filter(None, sentences), MAX_SENTENCES))
 
 
 def of_phrase_at(analysis: Analysis, file: str, path: NodePath) -> str:
-    """Return sample sentences with the phrase at a path; empty if it is not a text."""
+    """Return sample sentences for the phrase at a path; empty if there are none or the node is not a text."""
     text = analysis.documents[file].value(path)
     if not isinstance(text, str):
         return ""
@@ -61,7 +61,7 @@ def of_phrase_at(analysis: Analysis, file: str, path: NodePath) -> str:
 
 
 def _taken(machine: MachineDefinition, row: Hears) -> Iterator[SampleSentence]:
-    """Yield sentences for which this row is the first match in its state."""
+    """Yield sentences for which this row is the first match, with the values of `heard` that they set."""
     hearing = hearing_of(machine)
     for text in islice(of_row(machine, row, machine.context), MAX_TRIED):
         order = hearing.order(row.number, text, machine.context)

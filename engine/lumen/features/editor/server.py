@@ -1,4 +1,4 @@
-"""The language server, with an answer for each row of `editor_requests` and `editor_commands`."""
+"""The language server, with a handler for each row of `editor_requests` and `editor_commands`."""
 
 import logging
 import sys
@@ -11,8 +11,7 @@ from lumen.feature import Feature, rows
 from lumen.features.editor.language_server import LanguageServer
 from lumen.project.broken_features import blamed, resolved
 
-# Reasons to refuse a request, such as a name that is taken or a text that has changed: an answer, not a fault of
-# the server.
+# Refusals of a request, for example because a name is taken or a text has changed: answers, not faults of the server.
 
 _REFUSALS = (JsonRpcInvalidParams, JsonRpcContentModified)
 
@@ -21,24 +20,24 @@ class RefusalFilter(logging.Filter):
     """Keeps refusals out of the log, where pygls writes a traceback of every exception."""
 
     def filter(self, record: logging.LogRecord) -> bool:
-        """Return True if the record is anything but a refusal."""
+        """Return False for a refusal, True for any other record."""
         return not (record.exc_info and isinstance(record.exc_info[1], _REFUSALS))
 
 
 def quiet() -> None:
-    """Log only errors of pygls, and no refusals."""
+    """Log only errors of pygls, without refusals."""
     logging.getLogger("pygls").setLevel(logging.ERROR)
     logging.getLogger("pygls.protocol.json_rpc").addFilter(RefusalFilter())
 
 
 SWITCH_INTERVAL = 0.001
-"""The interval of Python's switches between threads, the longest delay of an answer by a check [s]."""
+"""The interval at which Python switches threads, which limits the delay of an answer by another thread [s]."""
 
 _log = logging.getLogger(__name__)
 
 
 def server() -> LanguageServer:
-    """Return a server that has not been started yet. A faulty row of an installed package is left out and logged."""
+    """Return a new language server, not yet started; rows that can't be registered are logged and left out."""
     made = LanguageServer()
     for feature, (method, row) in rows("editor_requests"):
         _register(feature, row.answer, made.feature, method, *filter(None, [row.options]))

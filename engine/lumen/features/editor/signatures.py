@@ -1,4 +1,4 @@
-"""The function whose call contains the cursor in an expression."""
+"""The signature of the function whose call contains the cursor in an expression."""
 
 import inspect
 import re
@@ -54,7 +54,7 @@ def signature(analysis: Analysis, file: str, line: int, column: int) -> Function
 
 
 def _of_project(analysis: Analysis, function: FunctionDefinition, active: int) -> FunctionSignature:
-    """Return the signature of a function of the project, described in the project's first language."""
+    """Return the signature of one of the project's functions, described in the project's first language."""
     settings = analysis.draft.settings
     shown = tuple(f"{name}: {' or '.join(kinds)}" for name, kinds in function.parameters.items())
     gives = " or ".join(function.returns) if len(function.returns) < 4 else "anything"

@@ -1,4 +1,4 @@
-"""The symbols that a file defines, as a tree: states within states, and everything else by its key."""
+"""The symbols that a file defines, as a tree in which states contain their inner states."""
 
 from collections.abc import Iterator
 from typing import NamedTuple
@@ -12,25 +12,25 @@ from lumen.project.project_folders import kind_of
 
 
 class Symbol(NamedTuple):
-    """A thing that a file defines."""
+    """A name that a file defines."""
 
     name: str
     kind: NameKind
     place: Place
-    """The place of the thing's name."""
+    """The place of the name."""
     whole: Place
-    """The place of the thing's whole definition."""
+    """The place of the whole definition."""
     children: tuple["Symbol", ...] = ()
 
 
 def symbols(analysis: Analysis, file: str) -> tuple[Symbol, ...]:
-    """Return the symbols of a file in its order; none if the file is unreadable."""
+    """Return a file's symbols in their order; empty if the file is unreadable."""
     document = analysis.documents.get(file)
     return _below(document, kind_of(file), ()) if document else ()
 
 
 def search(analysis: Analysis, query: str) -> Iterator[NameUse]:
-    """Yield the definitions whose names contain the letters of the query in their order."""
+    """Yield the definitions in the project's files whose names contain the query's letters in this order."""
     for use in analysis.index.uses:
         letters = iter(use.name.lower())
         if use.defines and use.place.file in analysis.files and all(letter in letters for letter in query.lower()):

@@ -9,9 +9,10 @@ CALLS = lsp.SignatureHelpOptions(trigger_characters=["(", ","])
 
 
 async def lens(server: LanguageServer, params: lsp.CodeLensParams) -> list[lsp.CodeLens]:
-    """Return lenses with their commands.
+    """Return a document's lenses with their commands.
 
-    The arguments are the project's folder and a name; or a document, a position and related places.
+    A command's arguments are the project's folder and a name or, for lenses with places, the document, the lens's
+    position and the places.
     """
     uri = params.text_document.uri
     if (found := await server.settled(uri)) is None:
@@ -41,7 +42,7 @@ async def hint(server: LanguageServer, params: lsp.InlayHintParams) -> list[lsp.
 
 
 def call(server: LanguageServer, params: lsp.SignatureHelpParams) -> lsp.SignatureHelp | None:
-    """Return the signature of the function that is being called at a position; None if there is none."""
+    """Return the signature of the function whose call contains a position; None if there is none."""
     if (found := server.asked(params, signatures.signature)) is None:
         return None
     shown = lsp.SignatureInformation(

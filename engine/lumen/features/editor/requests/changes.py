@@ -49,7 +49,7 @@ async def rename(server: LanguageServer, params: lsp.RenameParams) -> lsp.Worksp
 
 
 async def repair(server: LanguageServer, params: lsp.CodeActionParams) -> list[lsp.CodeAction]:
-    """Return the fixes of a document's findings in a range."""
+    """Return the fixes for a document's findings in a range."""
     if (found := await server.settled(params.text_document.uri)) is None:
         return []
     analysis, file = found

@@ -1,4 +1,4 @@
-"""The lenses' commands, for editors without a terminal: they run a process and show the end of its output."""
+"""The lenses' commands for editors without a terminal, which run a process and show the end of its output."""
 
 import asyncio
 import sys
@@ -10,7 +10,7 @@ from lumen.features.editor.language_server import LanguageServer
 from lumen.features.editor.ranges import path_of
 
 MAX_TOLD = 2_000
-"""The maximum number of characters of a process's output that are shown, from its end."""
+"""The maximum length of the shown end of a process's output [characters]."""
 
 
 async def run_story(server: LanguageServer, root: str, name: str) -> bool:
@@ -24,7 +24,7 @@ async def play_motion(server: LanguageServer, root: str, name: str) -> bool:
 
 
 def show_places(server: LanguageServer, uri: str, position: lsp.Position, places: list[lsp.Location]) -> None:
-    """Do nothing: some editors list the places themselves; in others the lens's title already shows their number."""
+    """Do nothing, because some editors list the places themselves, and in others the lens's title shows their number."""
 
 
 async def _performed(server: LanguageServer, root: str, verb: str, name: str) -> bool:

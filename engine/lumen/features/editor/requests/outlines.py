@@ -1,4 +1,4 @@
-"""The outline of a file, symbols of the project, folding ranges, and links to files."""
+"""Requests for a file's outline, the projects' symbols, folding ranges, and links to files."""
 
 from lsprotocol import types as lsp
 
@@ -18,7 +18,7 @@ async def outline(server: LanguageServer, params: lsp.DocumentSymbolParams) -> l
 
 
 def search(server: LanguageServer, params: lsp.WorkspaceSymbolParams) -> list[lsp.WorkspaceSymbol]:
-    """Return the open projects' symbols whose names contain the letters of the query in their order."""
+    """Return up to MAX_FOUND_SYMBOLS symbols of open projects whose names contain the query's letters in this order."""
     found: list[lsp.WorkspaceSymbol] = []
     for analysis in server.analyses():
         encoder = server.encoder(analysis)
@@ -42,7 +42,7 @@ async def fold(server: LanguageServer, params: lsp.FoldingRangeParams) -> list[l
 
 
 async def link(server: LanguageServer, params: lsp.DocumentLinkParams) -> list[lsp.DocumentLink]:
-    """Return the links of a document to files."""
+    """Return a document's links to files."""
     if (found := await server.settled(params.text_document.uri)) is None:
         return []
     encoder = server.encoder(found[0])

@@ -24,24 +24,24 @@ def complete(server: LanguageServer, params: lsp.CompletionParams) -> list[lsp.C
 
 
 async def show(server: LanguageServer, params: lsp.HoverParams) -> lsp.Hover | None:
-    """Return the hover text of a position, None without one."""
+    """Return the hover text at a position; None if there is none."""
     await server.settled(params.text_document.uri)
     text = server.asked(params, hover.hover)
     return lsp.Hover(lsp.MarkupContent(lsp.MarkupKind.Markdown, text)) if text else None
 
 
 def define(server: LanguageServer, params: lsp.DefinitionParams) -> list[lsp.Location]:
-    """Return the places where the name at a position is defined."""
+    """Return the definitions of the name at a position."""
     return _places(server, params, definitions.definitions)
 
 
 def refer(server: LanguageServer, params: lsp.ReferenceParams) -> list[lsp.Location]:
-    """Return the places where the name at a position is used."""
+    """Return all uses of the name at a position, including its definitions."""
     return _places(server, params, definitions.uses)
 
 
 def highlight(server: LanguageServer, params: lsp.DocumentHighlightParams) -> list[lsp.DocumentHighlight]:
-    """Return every use in the document of the name at a position; definitions are marked as written, others as read."""
+    """Return the document's uses of the name at a position, marked as written for definitions and else as read."""
 
     def marks(analysis: Analysis, file: str, line: int, column: int) -> list[lsp.DocumentHighlight]:
         use, ranges = analysis.index.at(file, line, column), server.encoder(analysis).ranges(file)

@@ -1,4 +1,4 @@
-"""The beginning and end of a session, and changed, saved and closed documents."""
+"""Notifications of a session's beginning and end, and of opened, changed, saved and closed documents."""
 
 from pathlib import Path
 
@@ -14,34 +14,34 @@ def begun(server: LanguageServer, params: lsp.InitializedParams) -> None:
 
 
 def ended(server: LanguageServer, params: None) -> None:
-    """End the server's thread and processes."""
+    """End the thread that follows exhibitions, and the checking processes."""
     server.close()
 
 
 def opened(server: LanguageServer, params: lsp.DidOpenTextDocumentParams) -> None:
-    """Check the document's project at once."""
+    """Store the document's text, and check its project immediately."""
     server.written(params.text_document.uri, at_once=True)
 
 
 def changed(server: LanguageServer, params: lsp.DidChangeTextDocumentParams) -> None:
-    """Check the document's project once typing pauses."""
+    """Store the document's text, and check its project after a pause in typing."""
     server.written(params.text_document.uri)
 
 
 def saved(server: LanguageServer, params: lsp.DidSaveTextDocumentParams) -> None:
-    """Check the document's project at once."""
+    """Check the document's project immediately."""
     server.written(params.text_document.uri, at_once=True)
 
 
 def closed(server: LanguageServer, params: lsp.DidCloseTextDocumentParams) -> None:
-    """Forget the document's unsaved text, and check its project."""
+    """Discard the document's unsaved text, and check its project after a pause in typing."""
     path = Path(path_of(params.text_document.uri))
     server.projects.close(path)
     server.check(path)
 
 
 def touched(server: LanguageServer, params: lsp.DidChangeWatchedFilesParams) -> None:
-    """Check the projects of files that changed on disk."""
+    """Check the projects of files that have changed on disk."""
     for change in params.changes:
         path = Path(path_of(change.uri))
         server.projects.forget(path)
