@@ -1,4 +1,4 @@
-"""Decides when the ears are open, from faces and touches."""
+"""Decides from faces and touches when the ears are open."""
 
 import threading
 from collections import deque
@@ -6,25 +6,24 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 ALWAYS, FACE, TOUCH, SPEAKS, NOBODY = "always", "face", "touch", "speaks", "nobody"
-"""The reasons to listen or not to listen, as on the route `listening`."""
+"""The reasons to listen or not to listen, as published on the route `listening`."""
 AFTER_FACE, AFTER_TOUCH = 3.0, 10.0
-"""The default times that the ears stay open [s]: people look away while they think, and need time to
-walk up."""
-LEAD = 1.0
-"""The time before the face or the touch in which the ears count as open [s]: people nearby begin to speak before
-they look.
+"""How long the ears stay open by default after a face and after a touch [s]: people look away while they think, and
+need time to walk up.
 """
+LEAD = 1.0
+"""How long before a face or touch the ears count as open [s]: people nearby begin to speak before they look."""
 MAX_SPANS = 100
-"""The most open spans that are kept; a sound lasts two minutes at most."""
+"""The maximum number of open spans that are kept; a sound lasts at most two minutes."""
 NO_DISTANCE = "faces come without a `distance`, so `within` has no effect: delete it, or use Lumen's own eyes"
 Span = tuple[float, float]
 
 
 class Addressing:
-    """Opens the ears for some seconds after a touch, or a near face that looks at the robot.
+    """Opens the ears for some seconds after a touch, or after a near face looks at the robot.
 
-    Without settings, they are always open. `said` is `listens` of the module's settings; `tell` receives a reason why
-    one of these has no effect. Messages may arrive on any thread, in the order of time.
+    Without settings, the ears are always open. `said` is `listens` of the module's settings; `tell` receives the reason
+    if one of these has no effect. Messages can arrive on any thread, in chronological order.
     """
 
     def __init__(self, said: Mapping[str, Any], tell: Callable[[str], None]) -> None:
@@ -34,7 +33,7 @@ class Addressing:
         self._spans: deque[Span] = deque(maxlen=MAX_SPANS)
 
     def routes(self) -> Mapping[str, Callable[[Any, float], None]]:
-        """Return the routes that open the ears, each with a function of a body and its time of arrival [s]."""
+        """Return the configured routes that open the ears, each with a function of a body and its arrival time [s]."""
         return {route: take for key, route, take in (("face", "face", self.face), ("touch", "tactile", self.touch))
                 if key in self._said}  # fmt: skip
 
@@ -68,7 +67,7 @@ class Addressing:
                     self._open(TOUCH, at, said.get("after", AFTER_TOUCH))
 
     def closed(self, begin: float, end: float) -> list[Span]:
-        """Return the spans between these times [s] in which the robot was not addressed, the earliest first."""
+        """Return the spans between two times [s] in which the robot was not addressed, the earliest first."""
         if self.always:
             return []
         with self._lock:
@@ -77,7 +76,7 @@ class Addressing:
         return [(b, e) for b, e in zip(edges[::2], edges[1::2], strict=True) if b < e]
 
     def state(self, now: float) -> tuple[str, float]:
-        """Return the reason why the ears are open, or why they are closed; and the time until which that lasts [s]."""
+        """Return the reason why the ears are open or closed, and when that ends [s], infinity if unknown."""
         if self.always:
             return ALWAYS, float("inf")
         with self._lock:

@@ -1,4 +1,4 @@
-"""Listens to recordings, and publishes what was said in them."""
+"""The module that recognises speech in sounds and publishes the texts."""
 
 import time
 from collections.abc import Callable, Mapping, Sequence
@@ -21,13 +21,13 @@ from lumen.run.module import Module
 from lumen.run.sound import Sound, sound_of
 
 LOST_AFTER = 4.0
-"""The time for which the states of a silent brain remain valid [s]."""
+"""How long the states of a silent brain remain valid [s]."""
 
 
 class ActiveStates:
     """The active states of one robot's behaviour, from the routes `state` and `presence`.
 
-    A brain that has not announced itself, such as one on a bus within this process, is never lost.
+    A brain that has not announced its presence, such as one within this process, never counts as lost.
     """
 
     def __init__(self, robot: str) -> None:
@@ -36,42 +36,42 @@ class ActiveStates:
         self._until = float("inf")
 
     def state(self, body: Any, at: float) -> None:
-        """Read a message about the behaviour that arrived at a time [s]; only those after a step have `states`."""
+        """Read a message about the behaviour that arrived at a time [s]; messages without `states` are ignored."""
         match body:
             case {"robot": self._robot, "states": list(states)}:
                 self._names = frozenset(map(str, states))
                 self._until = max(self._until, at + LOST_AFTER)
 
     def presence(self, body: Any, at: float) -> None:
-        """Read the announcement of a process."""
+        """Read a process's presence message that arrived at a time [s]; only those of the robot's brain count."""
         match body:
             case {"robot": self._robot, "parts": list(parts), "state": "here"} if "brain" in parts:
                 self._until = at + LOST_AFTER
 
     def names(self, at: float) -> frozenset[str] | None:
-        """Return the names of the active states at a time [s], as `state` has them; None if they are unknown."""
+        """Return the names of the active states at a time [s], as received by `state`; None if they are unknown."""
         if at > self._until:
             self._names = None
         return self._names
 
 
 INTERRUPTS = ("stop",)
-"""The default phrases that are heard while the robot speaks."""
+"""The default names of the phrases that are heard while the robot speaks."""
 TICK = 0.05
-"""The accuracy of the time at which a change of listening is published [s]."""
+"""The time resolution at which changes of listening are published [s]."""
 PADDING = 0.3
-"""The silence before and after speech that the recogniser receives [s]."""
+"""How much of the sound before and after speech the recogniser receives [s]."""
 
 
 class Ears(Module):
-    """The speech half of the audio module: the robot's recordings, and sounds from other programs, become texts.
+    """The speech half of the audio module, which turns the robot's recordings and other programs' sounds into texts.
 
     It is half duplex: while the robot speaks, and until its echo has faded, only phrases that interrupt it are heard.
     The same applies if `listens` is set and the robot is not addressed. The expected and the interrupting phrases
-    depend on the states that are active when a sound arrives; a sound is assumed to end at that moment. Changes of
-    listening, with their reasons, are published on the route `listening`. A recogniser and a detector of speech may be
-    passed in; the defaults are PocketSphinx, or the Whisper of the settings, and Silero's network. Raises ModuleError
-    if the recogniser is missing.
+    depend on the states that are active when a sound arrives, which is assumed to be the sound's end. Changes of
+    listening, with their reasons, are published on the route `listening`. A recogniser and a speech detector can be
+    passed in. The default recogniser is PocketSphinx, or the Whisper model in the settings; the default detector is
+    Silero's network. Raises ModuleError if the recogniser is missing.
     """
 
     name = EARS
@@ -118,9 +118,9 @@ class Ears(Module):
         self._look_for_phrases()
 
     def idle(self) -> float | None:
-        """Publish whether the ears listen if it has changed; return the time until the next change [s].
+        """Publish whether the ears listen and why, if that has changed; return the time until the next change [s].
 
-        Return None if the next change is unknown.
+        Return None if no change is foreseen.
         """
         now = self.clock()
         because, until = self._addressing.state(now)
@@ -133,13 +133,13 @@ class Ears(Module):
         return None if until == float("inf") else max(TICK, until - now)
 
     def _take(self, route: str, message: Message) -> None:
-        """Note faces and touches when they arrive, even if an earlier sound is still being recognised."""
+        """Record faces and touches when they arrive, even if an earlier sound is still being recognised."""
         if take := self._addressing.routes().get(route):
             take(message.body, self.clock())
         super()._take(route, message)
 
     def _look_for_phrases(self) -> None:
-        """Report names in `interrupts` that no state hears: they interrupt nothing."""
+        """Report names in `interrupts` that no state hears, because they have no effect."""
         known = dict.fromkeys(one.name for one in heard_names(self.project, None) if "." not in one.name)
         for name in self.settings.options.get("interrupts", ()):
             if name not in known:
@@ -168,9 +168,9 @@ class Ears(Module):
         self.well()
 
     def _heard(self, sound: Sound) -> Sequence[Hypothesis]:
-        """Return the sentences that may have been said in a sound that has just ended; none if nobody spoke.
+        """Return the possible texts of a sound that has just ended, the likeliest first; none if it has no speech.
 
-        Only the likeliest text may interrupt the robot: alternatives for its own words often contain a phrase.
+        Only the likeliest text can interrupt the robot, because alternatives for its own words often contain a phrase.
         """
         began = self.came - sound.duration
         own = self._own_voice.during(began, self.came)
@@ -186,7 +186,7 @@ class Ears(Module):
         return [Hypothesis(phrase)] if phrase else []
 
     def _words(self, sound: Sound, own: Sequence[Utterance] = ()) -> Sequence[Hypothesis]:
-        """Return the likely texts of a sound, the best first; words of the robot's `own` voice are expected."""
+        """Return the likely texts of a sound, the best first; the robot's `own` utterances are expected in it."""
         if self._activity:
             spans = self._activity.spans(sound)
             if not spans:
@@ -200,7 +200,10 @@ class Ears(Module):
 
 
 def _interrupting(text: str, sought: Sequence[HeardName], own: Sequence[Utterance]) -> str:
-    """Return the longest phrase of these names in a text that the robot does not say itself."""
+    """Return the longest phrase of the first of the names `sought` that a text has, if the robot does not say it.
+
+    Return an empty text if there is no such phrase.
+    """
     for one in sought:
         finder = one.finder()
         said, ours = finder.read(text), " ".join(f" {' '.join(finder.read(u.text).words)} " for u in own)
@@ -211,7 +214,7 @@ def _interrupting(text: str, sought: Sequence[HeardName], own: Sequence[Utteranc
 
 
 def _row(found: Hypothesis) -> dict[str, object]:
-    """Return a hypothesis as part of a message."""
+    """Return a hypothesis as fields of a message; `confidence` is left out if unknown."""
     sure = {} if found.confidence is None else {"confidence": round(found.confidence, 3)}
     return {"result": found.text, **sure}
 

@@ -1,4 +1,4 @@
-"""Sentences that visitors are likely to say: those that the active states hear, and those in the stories."""
+"""The sentences that visitors are likely to say: those that the active states hear, and those in stories."""
 
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from itertools import islice
@@ -17,9 +17,9 @@ from lumen.talk.patterns import Slot, forms, slots_of
 from lumen.talk.speech import TABLES, WORD_LISTS, Speech
 
 MAX_SENTENCES = 1_000
-"""The most sentences of one phrase: its forms, with the entries of lists in their slots."""
+"""The maximum number of sentences of one phrase: its forms, with the entries of lists in their slots."""
 STORY_WEIGHT = 10
-"""The weight of a story's sentence in forms: stories show how people talk, but there are thousands of forms."""
+"""The weight of a story's sentence, counted in forms: stories show how people talk, but forms are far more numerous."""
 _NO_MEANINGS = frozenset((*WORD_LISTS, *TABLES))
 _ENTRY = "context."
 _STRAIGHT = dict.fromkeys(map(ord, APOSTROPHES), "'")
@@ -28,7 +28,7 @@ PhraseLists = Mapping[str, Sequence[Mapping[str, Any]]]
 
 
 class HeardName(NamedTuple):
-    """A name that a state hears: of phrases, answers or an entry's field."""
+    """The name of phrases, an answers table or an entry's field that a state hears."""
 
     machine: MachineDefinition
     name: str
@@ -36,7 +36,7 @@ class HeardName(NamedTuple):
     def phrases(self) -> list[str]:
         """Return the phrases of the name in all languages.
 
-        For an entry's field these are the phrases of all entries, since any may be the current one.
+        For an entry's field these are the phrases of all entries, because any can be the current one.
         """
         machine, name = self
         tables: list[Any] = [machine.phrases.get(name), *(row.phrases for row in machine.answers.get(name, ()))]
@@ -55,8 +55,8 @@ class HeardName(NamedTuple):
 def heard_names(project: Project, states: Collection[str] | None) -> list[HeardName]:
     """Return the names that the active states hear, in `hears` and in guards that call `heard` or `lookup`.
 
-    `states` are the names of all active states, including enclosing ones. If they are unknown, or belong to other files
-    than these, all states of all behaviours count.
+    `states` are the names of all active states, including enclosing ones. If it is None or has a name that the project
+    lacks, all states of all behaviours count.
     """
     active = None if states is None else _active(project.machine, states)
     if active is None:
@@ -66,9 +66,9 @@ def heard_names(project: Project, states: Collection[str] | None) -> list[HeardN
 
 
 def expected(project: Project, heard: Iterable[HeardName], own: Iterable[str] = ()) -> list[list[str]]:
-    """Return sentences as words in lower case: forms of these names in any language, and the stories' sentences.
+    """Return sentences as words in lower case: the forms of the `heard` names in all languages, stories' and `own`.
 
-    `own` are texts that the robot itself says meanwhile. More likely sentences are repeated.
+    `own` are texts that the robot says at the same time. More likely sentences are repeated.
     """
     phrases = ((phrase, one.machine.lists) for one in heard for phrase in one.phrases())
     found = dict.fromkeys(tuple(words) for phrase in phrases for words in islice(_sentences(*phrase), MAX_SENTENCES))
@@ -78,7 +78,7 @@ def expected(project: Project, heard: Iterable[HeardName], own: Iterable[str] = 
 
 
 def _active(machine: MachineDefinition, names: Collection[str]) -> list[tuple[MachineDefinition, State]] | None:
-    """Return the states of these names with their machines, and the machines' roots; None if a name is unknown."""
+    """Return the states with these names and their machines' roots, each with its machine; None for an unknown name."""
     machines, active = {id(machine): machine}, {(id(machine), "")}
     for name in sorted(names):
         known = [(m, s.path) for m, local in resolutions(machine, name) for s in m.states.values() if s.name == local]
@@ -103,7 +103,7 @@ def _names(state: State) -> Iterator[str]:
 
 
 def _sentences(phrase: str, lists: PhraseLists) -> Iterator[list[str]]:
-    """Yield the forms of a phrase, with the entries of lists in their slots; other slots are left out."""
+    """Yield the forms of a phrase as words, with the entries of lists in their slots; other slots are left out."""
     written = {"".join(folded(word)): word for word in _spoken(phrase)}
     entries = {slot: _entries(slot, lists) for slot in slots_of(phrase)}
     for form in forms(phrase):

@@ -1,4 +1,4 @@
-"""The speech half of the audio module: recordings come in, texts go out."""
+"""The speech half of the audio module, which turns recordings into texts."""
 
 from lumen.features.ears.ears import Ears
 from lumen.features.ears.recogniser import Hypothesis, RankingRecogniser, Recogniser

@@ -1,15 +1,15 @@
-"""Tracks when the robot itself speaks, from messages on the bus."""
+"""Tracks the robot's own speech from messages on the bus."""
 
 from collections import deque
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 ECHO = 0.3
-"""The time for which a room still contains the robot's voice after its last word [s]."""
+"""How long the room echoes the robot's voice after its last word [s]."""
 LONGEST = 60.0
-"""The time after which a text without a reported end counts as over [s], so that the robot does not stay deaf."""
+"""A text without a reported end counts as finished after this long [s], so the robot does not stay deaf."""
 MAX_KEPT = 100
-"""The most texts that are kept; a sound lasts two minutes at most."""
+"""The maximum number of texts that are kept; a sound lasts at most two minutes."""
 _SPOKEN = ("started", "accepted")
 
 
@@ -22,14 +22,14 @@ class Utterance(NamedTuple):
 
 
 class OwnVoice:
-    """Tracks the robot's speech: commands of its behaviour (`state`), and those of other programs (`report`)."""
+    """Tracks the robot's speech by commands of its behaviour (`state`) and of other programs (`report`)."""
 
     def __init__(self) -> None:
         self._said: deque[Utterance] = deque(maxlen=MAX_KEPT)
         self._saying: dict[str, Utterance] = {}
 
     def state(self, body: Any, at: float) -> None:
-        """Read a message about the behaviour: a `say` that begins, or the answer to one."""
+        """Record that the behaviour's `say` began or ended, from a message received at `at` [s]."""
         match body:
             case {"command": {"verb": "say", "id": str(id), "text": str(text)}}:
                 self._begin(id, text, at)

@@ -7,28 +7,28 @@ from lumen.run.sound import Sound
 
 
 class Recogniser(Protocol):
-    """A speech recogniser; `languages` are those that it understands."""
+    """A speech recogniser; `languages` are the codes of the languages that it understands."""
 
     languages: tuple[str, ...]
 
     def expect(self, sentences: Sequence[Sequence[str]]) -> None:
-        """Set the sentences, as words, that are likely to be said; others may be too.
+        """Set the sentences, as words, that are likely to be said; others remain possible.
 
-        It may be called from any thread.
+        Any thread may call this.
         """
         ...
 
     def recognise(self, sound: Sound) -> str:
-        """Return the text of a sound, empty if nothing is said. It may take as long as it needs."""
+        """Return the text of a sound, empty if nothing is said. The call has no time limit."""
         ...
 
 
 class Hypothesis(NamedTuple):
-    """A text that may have been said."""
+    """A possible text of a sound."""
 
     text: str
     confidence: float | None = None
-    """Its probability, from 0 to 1; None if unknown."""
+    """The text's probability, from 0 to 1; None if unknown."""
 
 
 @runtime_checkable
@@ -42,7 +42,7 @@ class RankingRecogniser(Protocol):
         ...
 
     def recognise(self, sound: Sound) -> str:
-        """Return the text of the best hypothesis, empty without one."""
+        """Return the text of the best hypothesis, empty if there is none."""
         found = self.hypotheses(sound)
         return found[0].text if found else ""
 

@@ -4,7 +4,7 @@ from lumen.run.sound import Sound
 
 
 def resampled(sound: Sound, rate: int) -> Sound:
-    """Return the sound at another rate, interpolated linearly between its samples."""
+    """Return the sound at the sampling rate `rate` [Hz], interpolated linearly between its samples."""
     if sound.rate == rate:
         return sound
     import numpy as np

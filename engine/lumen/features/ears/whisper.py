@@ -15,21 +15,22 @@ from lumen.run.sound import Sound
 
 INSTALL_WHISPER = "pip install 'lumen-robot[ears-whisper]'"
 SAMPLE_RATE = 16_000
-"""The sampling rate of its models [Hz]."""
+"""The sampling rate of Whisper's models [Hz]."""
 FILES = ("config.json", "model.bin", "tokenizer.json")
-"""The files that a folder must contain; missing ones would be downloaded, which Lumen never does."""
+"""The files that a model's folder must contain, because faster-whisper would download missing ones."""
 NO_SPEECH = 0.6
-"""The probability of silence from which a part is ignored, as in OpenAI's program: Whisper invents sentences in
-silence.
+"""Segments with at least this probability of silence are ignored, as in OpenAI's program, because Whisper invents
+sentences in silence.
 """
 _NO_WORD = re.compile(r"[^\w\s'’-]|_")
 
 
 class Whisper(RankingRecogniser):
-    """The model in a folder; it ignores expected sentences, and gives one text for each sound.
+    """The model in a folder, which ignores expected sentences and returns at most one text for each sound.
 
-    For each sound it uses the likeliest of the `languages`. An engine with the methods of faster-whisper's
-    `WhisperModel` may be passed in. Raises ModuleError if the package or the folder is unusable.
+    Each sound is recognised in the likeliest of the `languages`. An engine with the methods of faster-whisper's
+    `WhisperModel` can be passed in. Raises ModuleError if the package or folder is unusable, or the model supports none
+    of the languages.
     """
 
     def __init__(self, folder: Path, languages: Sequence[str], engine: Any = None) -> None:
@@ -42,12 +43,12 @@ class Whisper(RankingRecogniser):
             )
 
     def expect(self, sentences: Sequence[Sequence[str]]) -> None:
-        """Do nothing: Whisper uses no expected sentences."""
+        """Do nothing, because Whisper does not use expected sentences."""
 
     def hypotheses(self, sound: Sound) -> Sequence[Hypothesis]:
-        """Return the text of a sound as a single hypothesis, none if nothing is said.
+        """Return the text of a sound as a single hypothesis; an empty list if nothing is said.
 
-        Raises ModuleError if Whisper fails on it.
+        Raises ModuleError if Whisper fails on the sound.
         """
         import numpy as np
 
@@ -74,12 +75,12 @@ class Whisper(RankingRecogniser):
 
 
 def shared_whisper(folder: Path, languages: Sequence[str]) -> SharedRecogniser:
-    """Return the process's Whisper of that folder."""
+    """Return a recogniser that shares the process's Whisper model from a folder."""
     return SharedRecogniser(f"whisper {folder}", partial(Whisper, folder, languages))
 
 
 def _loaded(folder: Path) -> Any:
-    """Return the model in a folder, in eight bits on the processor. Raises ModuleError if it can't be loaded."""
+    """Return the model in a folder, with 8-bit weights on the CPU. Raises ModuleError if it can't be loaded."""
     if not folder.is_dir():
         raise ModuleError(f"the folder {folder}, which `whisper` names, does not exist: put a CTranslate2 model there")
     missing = [name for name in FILES if not (folder / name).is_file()]

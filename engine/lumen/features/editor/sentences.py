@@ -27,7 +27,7 @@ _TAKEN = {
 
 
 def of_row_at(analysis: Analysis, file: str, line: int, column: int) -> str:
-    """Return the description of the row of `hears` whose key is there, with sample sentences; empty if there is none."""
+    """Return a description, with sample sentences, of the row of `hears` whose key is there; empty if there is none."""
     document, machine = analysis.documents.get(file), analysis.draft.behaviors.get(stem(file))
     at = document and key_at(document, line, column)
     if not at or machine is None or kind_of(file) != "behavior" or at[-2:-1] != ("hears",):

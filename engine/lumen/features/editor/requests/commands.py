@@ -24,7 +24,7 @@ async def play_motion(server: LanguageServer, root: str, name: str) -> bool:
 
 
 def show_places(server: LanguageServer, uri: str, position: lsp.Position, places: list[lsp.Location]) -> None:
-    """Do nothing, because some editors list the places themselves, and in others the lens's title shows their number."""
+    """Do nothing: some editors list the places themselves; in others the lens's title shows their number."""
 
 
 async def _performed(server: LanguageServer, root: str, verb: str, name: str) -> bool:
