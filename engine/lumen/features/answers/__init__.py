@@ -1,4 +1,4 @@
-"""Answers of language models to questions that no passage answers."""
+"""A language model's answers to questions that no passage answers."""
 
 from lumen.feature import Feature, ModuleRow
 

@@ -31,7 +31,7 @@ MAX_TOKENS = 120
 
 
 def request(model: str, asked: Mapping[str, Any], passages: Sequence[str], tools: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the body of a request; `tools` are the schemas of events by their names as tools."""
+    """Return the body of a chat completion request; `tools` are the schemas of events by tool name."""
     data = {"question": asked["question"], "passages": list(passages)}
     body: dict[str, Any] = {
         "model": model,
@@ -49,7 +49,7 @@ def request(model: str, asked: Mapping[str, Any], passages: Sequence[str], tools
 
 
 def tool_name(event: str) -> str:
-    """Return the name of the tool for an event: its first 64 characters, with `_` for all but letters and digits."""
+    """Return an event's tool name: its first 64 characters, with `_` for each that is no letter, digit or `_`."""
     return re.sub(r"[^A-Za-z0-9_]", "_", event)[:64]
 
 
@@ -66,7 +66,10 @@ class Allowance:
         self._visit, self._asked = 0, 0
 
     def refusal(self, visit: int, now: float) -> str:
-        """Return why another question is not allowed at `now` [s]; count one that is, and return an empty text."""
+        """Return why another question is not allowed at `now` [s]; if it is allowed, count it and return an empty text.
+
+        `visit` is the number of the visit; a new number begins a new count.
+        """
         while self._times and self._times[0] <= now - HOUR:
             self._times.popleft()
         if visit != self._visit:
@@ -81,20 +84,20 @@ class Allowance:
 
 
 MAX_SENTENCES = 2
-"""The most sentences of an answer that are said."""
+"""The maximum number of sentences of an answer that are said."""
 MAX_PASSAGES = 3
-"""The most passages that the model receives."""
+"""The maximum number of passages that are found for the model by meaning."""
 MAX_TEXT = 2_000
-"""The most characters of an answer that are read."""
+"""The length of an answer after which no more of it is read [characters]."""
 
 _log = logging.getLogger(__name__)
 
 
 class Answers(Module):
-    """Answers each question of `lumen.NAO.ask` on `lumen.NAO.answer`, sentence by sentence, then an end without text.
+    """Answers each question on `lumen.NAO.ask` with messages on `lumen.NAO.answer`: its sentences, then an empty end.
 
-    At most one event is raised, of those that the question offers, with data that matches its schema. Raises
-    ModuleError if lumen.yaml has no model.
+    An answer without sentences can raise one of the events that the question offers, with data that matches its schema.
+    Raises ModuleError if lumen.yaml has neither a language model nor embeddings.
     """
 
     name = ANSWERS
@@ -117,9 +120,9 @@ class Answers(Module):
         self._allowance.hour, self._allowance.visitor = self._model.hour, self._model.visitor
 
     def idle(self) -> float | None:
-        """Compute some vectors of passages while there is no question, if that needs no network.
+        """Compute some vectors of passages while no question waits, if that needs no network.
 
-        Return the time until the next call [s]: 0.0 while more may be missing, else None.
+        Return the time until the next call [s]: 0.0 if more vectors may be missing, else None.
         """
         try:
             return 0.0 if self._embeddings and self._embeddings.prepare(self.project) else None
@@ -151,11 +154,12 @@ class Answers(Module):
     def _known(
         self, embeddings: Embeddings, id: str, asked: Mapping[str, Any], passages: list[str], deadline: float
     ) -> list[str] | None:
-        """Return the passages nearest in meaning to the question.
+        """Return the passages nearest in meaning to the question, else `passages`, which are the nearest by words.
 
-        Return None if one of them is the answer, which is published.
+        If a passage is the answer, publish it and return None.
 
-        If the embeddings are unavailable, that is reported, and the passages nearest by words are used.
+        If the embeddings are unavailable, report that and return `passages`. Raises ModuleError if there is no language
+        model either.
         """
         question, language = asked["question"], asked["language"]
         soon = (time.monotonic() + deadline) / 2 if self._model.server else deadline
@@ -198,7 +202,7 @@ class Answers(Module):
     def _say(self, id: str, sentence: str, asked: Mapping[str, Any], passages: list[str]) -> None:
         """Publish a sentence.
 
-        Raises ModuleError if it may not be said; then the rest of the answer is not said either.
+        Raises ModuleError if the sentence is refused, which also ends the answer.
         """
         if reason := refusal(sentence, asked["language"], passages, (self.project.robot,)):
             raise ModuleError(f"a sentence from the language model was not spoken: {reason}")
@@ -206,7 +210,7 @@ class Answers(Module):
         self.publish("answer", body)
 
     def _raise(self, id: str, calls: Iterable[Call], offers: Mapping[str, tuple[str, Mapping[str, Any]]]) -> None:
-        """Publish the event of the first call. Raises ModuleError if it was not offered or its data does not match."""
+        """Publish the event of the first call, if any. Raises ModuleError if it was not offered or its data is invalid."""
         for call in calls:
             if call.name not in offers:
                 raise ModuleError(f"the language model calls `{call.name[:40]}`, which was not offered to it")
@@ -218,7 +222,7 @@ class Answers(Module):
             return
 
     def _wanted(self) -> bool:
-        """Return whether the answer still matters: the module is not ending, and no other question waits."""
+        """Return True while the answer is needed: the module is not ending, and no other question waits."""
         return not (self._ending or self._waiting)
 
 

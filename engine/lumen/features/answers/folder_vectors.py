@@ -1,8 +1,8 @@
 """Vectors from a folder with static embeddings, as saved by Model2Vec and Sentence Transformers.
 
 The folder has `tokenizer.json`, and `model.safetensors` with a row for each token in `embeddings` or
-`embedding.weight`. A text's vector is the mean of its tokens' rows, each times its entry in `weights`, if present;
-`mapping` gives a token's row, if it is not the token's own. Nothing is ever downloaded.
+`embedding.weight`. A text's vector is the mean of its tokens' rows, each multiplied by its entry in `weights`, if
+present. If present, `mapping` has the index of each token's row. Nothing is ever downloaded.
 """
 
 from collections.abc import Callable, Sequence
@@ -14,9 +14,9 @@ from lumen.features.answers.vectors import MAX_LENGTH, KnownText, TextVector, un
 
 INSTALL = "pip install 'lumen-robot[answers-folder]'"
 PLACES = ("", "0_StaticEmbedding")
-"""The subfolders that may contain both files."""
+"""The subfolders that can contain both files; the empty name is the folder itself."""
 ROWS = ("embeddings", "embedding.weight")
-"""The names of the tensor with a row for each token."""
+"""The possible names of the tensor with a row for each token."""
 WANTED = "name a folder that Model2Vec has saved, with tokenizer.json and model.safetensors"
 BATCH = 256
 
@@ -29,7 +29,7 @@ class _Static(NamedTuple):
 
 
 class FolderVectors:
-    """Static embeddings in a folder, which is loaded at the first call."""
+    """Static embeddings in a folder, which the first call loads."""
 
     is_here = True
     batch = BATCH
@@ -39,13 +39,13 @@ class FolderVectors:
         self._model: _Static | None = None
 
     def vectors(self, texts: Sequence[KnownText], deadline: float, wanted: Callable[[], bool]) -> list[TextVector]:
-        """Return the vectors of these texts. Raises ModuleError if the folder is unusable."""
+        """Return the vectors of these texts. Raises ModuleError if the folder is unusable or a package is missing."""
         model = self._model = self._model or _loaded(self.folder)
         return [_vector(model, text[:MAX_LENGTH]) for text, _ in texts]
 
 
 def _vector(model: _Static, text: str) -> TextVector:
-    """Return a text's vector; without any known token the mean of all tokens, which resembles no text."""
+    """Return a text's vector. Without a known token it is the mean of all tokens, which resembles no text."""
     tokens = [id for id in model.tokenizer.encode(text, add_special_tokens=False).ids if id < len(model.mapping)]
     rows = model.rows[model.mapping[tokens]] * model.weights[tokens, None] if tokens else model.rows
     try:
@@ -73,6 +73,6 @@ def _loaded(folder: Path) -> _Static:
             raise ValueError("its tensors do not match")
     except StopIteration:
         raise ModuleError(f"{place / 'model.safetensors'} has no {' or '.join(ROWS)}: {WANTED}") from None
-    except Exception as error:  # tokenizers raises only Exception itself
+    except Exception as error:  # tokenizers raises plain Exception
         raise ModuleError(f"the embeddings in {folder} cannot be read ({error}): {WANTED}") from None
     return _Static(tokenizer, rows, weights, mapping)

@@ -1,4 +1,4 @@
-"""A POST over HTTP with a streamed answer, bounded in bytes and in time, however slowly the server sends."""
+"""A POST over HTTP with a streamed response, limited in size and time, even if the server sends slowly."""
 
 import io
 import json
@@ -14,9 +14,9 @@ from urllib.parse import urlsplit
 from lumen.errors import ModuleError
 
 MAX_BYTES = 200_000
-"""The largest answer with its head [bytes]; no answer of two sentences needs more."""
+"""The maximum size of a response with its headers [bytes]; no answer of two sentences needs more."""
 LOOK = 0.1
-"""The time between two checks whether the answer is still wanted [s]."""
+"""The time between two checks whether the response is still wanted [s]."""
 PIECE = 4_096
 
 
@@ -24,10 +24,11 @@ PIECE = 4_096
 def answered(
     url: str, body: Any, secret: str, deadline: float, wanted: Callable[[], bool], most: int = MAX_BYTES
 ) -> Iterator[tuple[str, Iterator[bytes]]]:
-    """Send `body` as JSON, and yield the answer's media type and an iterator of its bytes.
+    """Send `body` as JSON, and yield the response's media type and an iterator of its bytes.
 
-    Redirects are not followed. Raises ModuleError with the reason, which never contains the key: at `deadline`
-    (`time.monotonic`), if `wanted` returns False, for more than `most` bytes with the head, or a status other than 200.
+    Redirects are not followed. Raises ModuleError, never with the key in its message: at `deadline` (`time.monotonic`),
+    if `wanted` returns False, for more than `most` bytes with headers, a status other than 200, or an invalid or
+    unreachable server.
     """
     parts = urlsplit(url)
     connection: socket.socket | None = None
@@ -81,13 +82,13 @@ def _pieces(response: HTTPResponse) -> Iterator[bytes]:
 
 
 class _Bounded:
-    """A connection for HTTPResponse to read from, with a limit of bytes and time, while the answer is wanted."""
+    """A connection for HTTPResponse to read from, with limits of size and time, while the response is wanted."""
 
     def __init__(self, connection: socket.socket, deadline: float, wanted: Callable[[], bool], most: int) -> None:
         self._reader = _BoundedReader(connection, deadline, wanted, most)
 
     def makefile(self, mode: str) -> io.BufferedReader:
-        """Return the bounded reader."""
+        """Return a buffered file for the limited reading of the connection; `mode` is ignored."""
         return io.BufferedReader(self._reader)
 
 
@@ -97,13 +98,13 @@ class _BoundedReader(io.RawIOBase):
         self._most = self._left = most
 
     def readable(self) -> bool:
-        """Return True."""
+        """Return True, as `io.BufferedReader` requires."""
         return True
 
     def readinto(self, buffer: Any) -> int:
-        """Read into the buffer.
+        """Read into the buffer, and return the number of bytes, 0 at the end.
 
-        Raises TimeoutError at the deadline, ModuleError for too much data or an unwanted answer.
+        Raises TimeoutError at the deadline, ModuleError for too much data or an unwanted response.
         """
         while self._wanted():
             left = self._deadline - time.monotonic()

@@ -1,4 +1,4 @@
-"""Finds passages by meaning: features of vectors, to be used beside those of words."""
+"""Features for finding passages by meaning, computed from vectors and used besides features of words."""
 
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
@@ -14,7 +14,7 @@ Embed = Callable[[Sequence[KnownText]], list[TextVector]]
 
 
 def by_meaning(embed: Embed) -> "Method":
-    """Return a method with three features of the similarity of meaning.
+    """Return a method with three features of similarity in meaning.
 
     They are the similarity of the nearest wording, the average of the nearest three, and the similarity of the answer.
     """
@@ -31,7 +31,7 @@ def by_meaning(embed: Embed) -> "Method":
 
 
 def _likeness(embed: Embed, known: Sequence[KnownText]) -> "Scorer":
-    import numpy as np  # late: only embeddings need it
+    import numpy as np  # imported late, because only embeddings need it
 
     rows = np.array(embed(known), np.float32)
 

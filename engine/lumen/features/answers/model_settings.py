@@ -1,4 +1,4 @@
-"""The settings of the module's servers in lumen.yaml."""
+"""The module's settings in lumen.yaml: servers of models, and limits."""
 
 import os
 from collections.abc import Mapping
@@ -11,11 +11,11 @@ class ServerSettings(NamedTuple):
     """A model on a server."""
 
     url: str
-    """The address for requests."""
+    """The URL for requests."""
     name: str
     """The model's name on the server."""
     key: str = ""
-    """The environment variable with the key, empty for none."""
+    """The environment variable with the key; empty if the server needs no key."""
 
     @classmethod
     def of(cls, said: Mapping[str, Any]) -> "ServerSettings":
@@ -23,9 +23,9 @@ class ServerSettings(NamedTuple):
         return cls(said["url"], said["name"], said.get("key", ""))
 
     def secret(self) -> str:
-        """Return the key from the environment, empty if the settings name no variable for it.
+        """Return the key from the environment, empty if the settings name no variable.
 
-        Raises ModuleError if it is not set, or is not printable ASCII.
+        Raises ModuleError if the variable is unset or empty, or is not printable ASCII.
         """
         if not self.key:
             return ""
@@ -40,13 +40,13 @@ class ModelSettings(NamedTuple):
     server: ServerSettings | None
     """The model's server; None if only embeddings are used."""
     hour: int = 60
-    """The most questions per hour."""
+    """The maximum number of questions per hour."""
     visitor: int = 10
-    """The most questions per visit."""
+    """The maximum number of questions per visit."""
 
     @classmethod
     def of(cls, options: Mapping[str, Any]) -> "ModelSettings":
-        """Return the settings in the module's options. Raises ModuleError if they name no server and no embeddings."""
+        """Return the settings in the module's options. Raises ModuleError if they have neither a model nor embeddings."""
         model, budget = options.get("model"), options.get("budget") or {}
         if not isinstance(model, Mapping) and not isinstance(options.get("embeddings"), Mapping):
             raise ModuleError(

@@ -1,13 +1,13 @@
-"""The module `answers`: a strictly limited language model, for questions that no passage answers.
+"""The module `answers`: a strictly limited language model for questions that no passage answers.
 
-answers.py        receives questions, limits their number, makes the prompt, publishes the sentences that may be said
-model_settings.py the model's settings in lumen.yaml
-http_stream.py    a POST with a streamed answer, bounded in bytes and time
-chat.py           the pieces of a chat completion, streamed or whole
-sentence_check.py decides which sentences may be said
-embeddings.py     finds the passage with the meaning of a question; vectors of a package
+answers.py        receives questions, limits their number, makes the prompt, publishes the permitted sentences
+model_settings.py the module's settings in lumen.yaml
+http_stream.py    a POST with a streamed response, limited in size and time
+chat.py           reads chat completions, streamed or whole
+sentence_check.py decides which sentences are permitted
+embeddings.py     finds the passages nearest in meaning to a question; vectors from a package
 meaning.py        features of passages by vectors
-vectors.py        the interface of sources of vectors: embeddings.py, server_vectors.py, folder_vectors.py
+vectors.py        the interface of vector sources: embeddings.py, server_vectors.py, folder_vectors.py
 """
 
 from lumen.features.answers.answers import Answers

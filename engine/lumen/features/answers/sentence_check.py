@@ -1,7 +1,6 @@
-"""Decides which sentences of a language model may be said: short ones, in the right language, without facts of their
-own.
+"""Permits a language model's sentences that are short, in the right language, and without facts of their own.
 
-A sentence that can't be checked is refused: then the robot gives its answer for unknown questions.
+A sentence that can't be checked is refused, so the robot uses its answer for unknown questions.
 """
 
 import re
@@ -9,7 +8,7 @@ import unicodedata
 from collections.abc import Iterator, Sequence
 
 MAX_LENGTH = 300
-"""The most characters of a sentence."""
+"""The maximum length of a sentence [characters]."""
 
 COMMON = {
     "en": "a about also am an and any are as at be because but by can could do does for from good has have he hello"
@@ -28,7 +27,7 @@ COMMON = {
     "es": "a al como con de del donde el ella en es esta este esto están hay la las lo los me mi muy más no nos o para"
     " pero por porque que quien se ser si sin sobre son su sus sí también te tu un una y yo él",
 }
-"""The most common words of each language, by which it is recognised."""
+"""The most common words of each language, by which sentences in it are recognised."""
 WORDS = {language: frozenset(words.split()) for language, words in COMMON.items()}
 
 NUMBER_WORDS = {
@@ -42,7 +41,7 @@ NUMBER_WORDS = {
     "es": "dos tres cuatro cinco seis siete ocho nueve diez once doce veinte cien mil",
 }
 NUMBERS = frozenset(word for words in NUMBER_WORDS.values() for word in words.split())
-"""Words for numbers, except for one, which has other meanings."""
+"""Words for numbers, except for "one", which has other meanings."""
 ADDRESS = re.compile(
     r"[@/\\]|\w\.\w{2,}|\b(?:www|http|dot|titik|com|org|net|street|avenue|road|jalan|jl|straße|rue|calle)\b"
     r"|\b(?:e-?mail|surel|phone|telepon|telefon|whatsapp)\b",
@@ -52,11 +51,11 @@ _END = re.compile(r"[.!?…]+[\"'”’)]*(?=\s|$)")
 
 
 def sentences(text: str, *, ended: bool) -> tuple[list[str], str]:
-    """Return the complete sentences of a text, and the rest; if the text has `ended`, the rest is empty."""
+    """Return the complete sentences of a text, and the rest; if the text has `ended`, the rest is the last sentence."""
     found, at = [], 0
     for end in _END.finditer(text):
         if end.end() == len(text) and not ended:
-            break  # it may be 3.5
+            break  # more digits may follow, as in 3.5
         found.append(text[at : end.end()].strip())
         at = end.end()
     rest = text[at:]
@@ -66,7 +65,7 @@ def sentences(text: str, *, ended: bool) -> tuple[list[str], str]:
 
 
 def refusal(sentence: str, language: str, passages: Sequence[str], known: Sequence[str] = ()) -> str:
-    """Return why a sentence may not be said, empty if it may; `known` are further words that it may contain."""
+    """Return why a sentence is refused, empty if it is permitted; `known` are words that it can also contain."""
     if len(sentence) > MAX_LENGTH:
         return "it is too long"
     if reason := _other_language(sentence, language):
@@ -102,14 +101,14 @@ def _other_language(sentence: str, language: str) -> str:
 
 
 def _names(sentence: str, common: frozenset[str]) -> Iterator[str]:
-    """Yield the words with a capital letter anywhere in the sentence, except the most common words."""
+    """Yield the sentence's words that contain a capital letter, except the most common words."""
     for word in re.findall(r"[^\W_]+(?:['’-][^\W_]+)*", sentence):
         if any(sign.isupper() for sign in word) and _bare(word) not in common:
             yield word
 
 
 def _bare(word: str) -> str:
-    """Return the word without a suffix: `johann` for `Johann's`."""
+    """Return a case-folded word without the part after an apostrophe: `johann` for `Johann's`."""
     return re.split(r"['’]", word)[0].casefold()
 
 

@@ -1,4 +1,4 @@
-"""Vectors from any server with an OpenAI-compatible `/v1/embeddings`."""
+"""Vectors from any server with OpenAI-compatible `/v1/embeddings`."""
 
 import json
 from collections.abc import Callable, Sequence
@@ -9,13 +9,13 @@ from lumen.features.answers.model_settings import ServerSettings
 from lumen.features.answers.vectors import KnownText, TextVector, unit
 
 BATCH = 32
-"""The most texts in one request."""
+"""The maximum number of texts in one request."""
 MAX_BYTES = 4_000_000
-"""The largest answer [bytes]: 32 vectors of 4,096 numbers as text."""
+"""The maximum size of a response [bytes]: 32 vectors of 4,096 numbers as text."""
 
 
 class ServerVectors:
-    """Requests vectors from a server, a batch at a time, without telling it which texts are answers."""
+    """Requests vectors from a server in batches; requests do not distinguish questions from answers."""
 
     is_here = False
 
@@ -26,7 +26,7 @@ class ServerVectors:
     def vectors(self, texts: Sequence[KnownText], deadline: float, wanted: Callable[[], bool]) -> list[TextVector]:
         """Return the vectors of these texts.
 
-        Raises ModuleError if the server can't be reached or its answer is invalid.
+        Raises ModuleError if the server can't be reached, its response is invalid or late, or the key is missing.
         """
         body = {"model": self.settings.name, "input": [text for text, _ in texts]}
         with answered(self.settings.url, body, self.settings.secret(), deadline, wanted, MAX_BYTES) as (_, pieces):

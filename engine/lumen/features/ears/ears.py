@@ -200,9 +200,9 @@ class Ears(Module):
 
 
 def _interrupting(text: str, sought: Sequence[HeardName], own: Sequence[Utterance]) -> str:
-    """Return the longest phrase of the first of the names `sought` that a text has, if the robot does not say it.
+    """Return a phrase of the names `sought` in a text, except those that the robot says itself; empty if there is none.
 
-    Return an empty text if there is no such phrase.
+    It is the longest such phrase of the first name that has one.
     """
     for one in sought:
         finder = one.finder()
@@ -220,7 +220,7 @@ def _row(found: Hypothesis) -> dict[str, object]:
 
 
 def _recogniser(project: Project, options: Mapping[str, Any]) -> Recogniser:
-    """Return the recogniser of lumen.yaml; only its own packages are needed."""
+    """Return the recogniser that lumen.yaml selects; only its own packages are needed."""
     folder = options.get("whisper")
     if folder is None:
         return shared_sphinx()

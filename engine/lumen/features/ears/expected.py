@@ -66,7 +66,7 @@ def heard_names(project: Project, states: Collection[str] | None) -> list[HeardN
 
 
 def expected(project: Project, heard: Iterable[HeardName], own: Iterable[str] = ()) -> list[list[str]]:
-    """Return sentences as words in lower case: the forms of the `heard` names in all languages, stories' and `own`.
+    """Return sentences as lower-case words: forms of the `heard` names in all languages, stories' sentences, and `own`.
 
     `own` are texts that the robot says at the same time. More likely sentences are repeated.
     """

@@ -191,7 +191,7 @@ def _samples(sound: Sound) -> "NDArray[np.float64]":
 
 
 def _hissing(samples: "NDArray[np.float64]") -> bytes:
-    """Return the samples with REST_SAMPLES of silence before and after, and with quiet noise that is always the same."""
+    """Return the samples with REST_SAMPLES added before and after, and with quiet noise that is always the same."""
     import numpy as np
 
     padded = np.pad(samples, REST_SAMPLES)

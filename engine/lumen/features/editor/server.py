@@ -37,7 +37,7 @@ _log = logging.getLogger(__name__)
 
 
 def server() -> LanguageServer:
-    """Return a new language server, not yet started; rows that can't be registered are logged and left out."""
+    """Return a new language server, not yet started. An installed package's faulty rows are logged and left out."""
     made = LanguageServer()
     for feature, (method, row) in rows("editor_requests"):
         _register(feature, row.answer, made.feature, method, *filter(None, [row.options]))
