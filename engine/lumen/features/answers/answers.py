@@ -210,7 +210,7 @@ class Answers(Module):
         self.publish("answer", body)
 
     def _raise(self, id: str, calls: Iterable[Call], offers: Mapping[str, tuple[str, Mapping[str, Any]]]) -> None:
-        """Publish the event of the first call, if any. Raises ModuleError if it was not offered or its data is invalid."""
+        """Publish the event of the first call, if any. Raises ModuleError if it was not offered or has invalid data."""
         for call in calls:
             if call.name not in offers:
                 raise ModuleError(f"the language model calls `{call.name[:40]}`, which was not offered to it")

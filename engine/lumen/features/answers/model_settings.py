@@ -46,7 +46,7 @@ class ModelSettings(NamedTuple):
 
     @classmethod
     def of(cls, options: Mapping[str, Any]) -> "ModelSettings":
-        """Return the settings in the module's options. Raises ModuleError if they have neither a model nor embeddings."""
+        """Return the settings in the module's options. Raises ModuleError if they lack both a model and embeddings."""
         model, budget = options.get("model"), options.get("budget") or {}
         if not isinstance(model, Mapping) and not isinstance(options.get("embeddings"), Mapping):
             raise ModuleError(

@@ -51,7 +51,7 @@ _END = re.compile(r"[.!?…]+[\"'”’)]*(?=\s|$)")
 
 
 def sentences(text: str, *, ended: bool) -> tuple[list[str], str]:
-    """Return the complete sentences of a text, and the rest; if the text has `ended`, the rest is the last sentence."""
+    """Return the complete sentences of a text, and the rest. If the text has `ended`, the rest counts as a sentence."""
     found, at = [], 0
     for end in _END.finditer(text):
         if end.end() == len(text) and not ended:
