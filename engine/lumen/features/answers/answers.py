@@ -54,7 +54,7 @@ def tool_name(event: str) -> str:
 
 
 HOUR = 3_600.0
-"""One hour [s]."""
+"""The period of the limit `hour` [s]."""
 
 
 class Allowance:

@@ -19,13 +19,13 @@ from lumen.upkeep.regular_files import read_regular
 
 COOKIE = "lumen_session"
 SESSION_TIME = 16 * 3600.0
-"""The lifetime of a session [s]: a day in a museum."""
+"""The lifetime of a session [s], enough for a museum's day."""
 SHORTEST_PIN = 4
 MAX_NAME = 60
 FIRST_PAUSE, LONGEST_PAUSE = 1.0, 60.0
 """An address's first and longest pause after too many wrong PINs [s]; each further wrong PIN doubles the pause."""
 FREE_TRIES = 3
-"""From this many wrong PINs on, an address must pause; fewer cause no pause, because people mistype."""
+"""The number of wrong PINs from which an address must pause; fewer cause no pause, because people mistype."""
 ALL_TRIES, ALL_PERIOD = 20, 10.0
 """All addresses together may try this many wrong PINs in a burst, then one per period [s]."""
 MAX_ADDRESSES = 1_000
@@ -34,7 +34,7 @@ _SECRET_BYTES = 32
 
 
 class TooFastError(Exception):
-    """A PIN may be tried again only after `wait` [s]."""
+    """Too many wrong PINs; the next attempt is allowed after `wait` [s]."""
 
     def __init__(self, wait: float) -> None:
         self.wait = max(1, math.ceil(wait))
@@ -110,7 +110,7 @@ class Access:
 class PinGuard:
     """Limits attempts at PINs.
 
-    An address must pause for longer after each wrong PIN, and all addresses share one limit.
+    An address with several wrong PINs must pause, longer after each further one. All addresses share one limit.
     """
 
     def __init__(self) -> None:
@@ -118,7 +118,7 @@ class PinGuard:
         self._all = TokenBucket(ALL_TRIES, time.monotonic())
 
     def check(self, address: str) -> None:
-        """Raise TooFastError if this address, or all addresses together, must wait."""
+        """Raise TooFastError if this address, or every address, must wait."""
         now = time.monotonic()
         count, at = self._wrong.get(address, (0, 0.0))
         pause = pause_after(count - FREE_TRIES + 1, FIRST_PAUSE, LONGEST_PAUSE)

@@ -18,17 +18,17 @@ JPEG = "data:image/jpeg;base64,"
 MAX_IMAGE = 4_000_000
 """The maximum length of an image on the bus [characters]."""
 PERIOD = 1 / 15
-"""The shortest time between two images of a stream [s]."""
+"""The minimum time between two images of a stream [s]."""
 SILENCE = 10.0
 """A stream ends after this long without an image [s]."""
 FRESH = 2.0
-"""The greatest age of a still image [s]."""
+"""The maximum age of a still image [s]."""
 LINGER = 2.0
 """The subscription remains for this long after the last viewer has left [s]."""
 
 
 class WatchedCamera:
-    """The newest image of one robot: `frame` is its JPEG data, empty before the first of `count` images."""
+    """The newest image of one robot: `frame` is its JPEG data, empty while `count`, the number of images, is 0."""
 
     def __init__(self) -> None:
         self.frame, self.count, self.lookers = b"", 0, 0

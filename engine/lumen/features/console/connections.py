@@ -6,9 +6,9 @@ from typing import Any, cast
 from uvicorn.protocols.http.h11_impl import H11Protocol
 
 READ_TIMEOUT = 10.0
-"""The longest time that a client may leave data unread [s]."""
+"""The maximum time for which a client can leave data unread [s]."""
 HIGH_WATER = 262_144
-"""The most unread data of a client before its stream waits [bytes], in addition to the system's own buffers."""
+"""The amount of a client's unread data at which its stream waits [bytes], besides the system's buffers."""
 
 _open: dict[tuple[str, int], asyncio.Transport] = {}
 

@@ -82,7 +82,7 @@ class DayMark(NamedTuple):
     text: str
     """The text of the mark."""
     by: str
-    """The person who set it."""
+    """The person who set the mark; empty if unknown."""
 
     def to_json(self) -> dict[str, Any]:
         return {"position": self.position, "at": iso_time(self.at), "text": self.text, "by": self.by}
@@ -90,7 +90,7 @@ class DayMark(NamedTuple):
 
 @dataclass
 class QuietStretch:
-    """Entries between two visits."""
+    """Consecutive entries outside visits."""
 
     first: int
     """The position of the first entry."""

@@ -45,7 +45,7 @@ class EntryRing:
         self._kept.clear()
 
     def add(self, page: ToldPage) -> int:
-        """Keep the new entries of a page of the journal, and return their number."""
+        """Add a page's new entries, drop the oldest beyond KEPT, and return the number of new ones."""
         new = [entry for entry in self.encoded(page) if entry.position > self.last]
         for entry in new:
             self._kept.append(entry)

@@ -28,7 +28,7 @@ class Exchange:
         return await _first(timeout, self.echo, self.nobody) and not self.nobody.is_set()
 
     async def answer(self, timeout: float) -> Any:
-        """Return the next answer. Raises BusUnreachableError if none comes within `timeout` [s], or none can come."""
+        """Return the next answer. Raises BusUnreachableError if none arrives within `timeout` [s] or can arrive."""
         nobody = asyncio.ensure_future(self.nobody.wait())
         answer = asyncio.ensure_future(self.answers.get())
         try:
@@ -84,7 +84,7 @@ class Exchanges:
             del self._open[mark]
 
     async def request(self, key: str, body: Any, timeout: float) -> Any:
-        """Send a question and return the first answer. Raises BusError if none comes within `timeout` [s]."""
+        """Send a question and return the first answer. Raises BusError if none arrives within `timeout` [s]."""
         with self.send(key, body, ttl=timeout) as exchange:
             return await exchange.answer(timeout)
 

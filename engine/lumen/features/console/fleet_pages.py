@@ -17,7 +17,7 @@ DECISIONS = ("pause", "go", "abort")
 
 
 class FleetPages:
-    """Passes requests on to the fleet's centre, and returns its answers."""
+    """Forwards requests to the fleet's centre, and returns its answers."""
 
     def __init__(self, reception: Reception) -> None:
         self._reception = reception

@@ -39,7 +39,7 @@ class SpokenNames:
 SILENT_AFTER = 2.5
 """An exhibition that has not answered for this long counts as disconnected [s]."""
 CLOCK_TOLERANCE = 0.7
-"""Smaller changes of a clock are ignored [s]: they may be the delay of an answer."""
+"""Smaller changes of a clock are ignored [s], because an answer's delay can cause them."""
 MAX_PROCESSES = 30
 MAX_SKILLS = 200
 SEEN_FOR = 1.5

@@ -1,4 +1,4 @@
-"""The commands of the pages: the role that each needs, and its message on the bus."""
+"""The pages' commands: the role that each needs, and its message on the bus."""
 
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
@@ -17,7 +17,7 @@ LONG, SHORT = 300.0, 15.0
 
 
 class Order(NamedTuple):
-    """A command as a message of the bus."""
+    """A command as a message on the bus."""
 
     key: str
     body: dict[str, Any]
@@ -26,7 +26,7 @@ class Order(NamedTuple):
     outcome: Callable[[Any], str | None]
     """Returns, for an answer, why the command failed, an empty text if it succeeded, None if more answers follow."""
     note: str = ""
-    """A line for the journal, for commands that do not pass through the behaviour."""
+    """A line for the journal, for commands that bypass the behaviour; empty for others."""
 
 
 Fields = Mapping[str, Any]
@@ -84,7 +84,7 @@ def order_of(command: str, fields: Fields, keys: RobotKeys, by: str) -> Order:
 
 
 def text_in(fields: Fields, name: str, most: int = MAX_NAME, *, needed: bool = True) -> str:
-    """Return the text of a field. Raises UsageError if it is not a string, too long, or blank although `needed`."""
+    """Return a field's text, empty if missing. Raises UsageError if it is no string, too long, or blank but `needed`."""
     value = fields.get(name, "")
     if not isinstance(value, str) or len(value) > most or (needed and not value.strip()):
         raise UsageError(f"`{name}` must be a string of {'1' if needed else '0'} to {most} characters")

@@ -27,7 +27,7 @@ MAX_REMOTE = 40_000
 
 
 class JournalSource:
-    """Entries of the robots of a watch. All methods raise BusError if the exhibition does not answer."""
+    """The journals of a watch's robots. All methods raise BusError if the exhibition does not answer."""
 
     def __init__(self, watch: Watch) -> None:
         self._watch = watch
@@ -103,7 +103,7 @@ class Past:
         """
         try:
             said = await self._request(view, question(what=what, **({"at": at} if at else {})))
-        except DeniedError:  # its journal may hold the answer
+        except DeniedError:  # the journal may contain the answer
             if not self.is_ours(view):
                 raise
             said = {"kept": "later"}

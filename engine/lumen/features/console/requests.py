@@ -56,7 +56,7 @@ class Reception:
             return Person(Role.NOBODY)
 
     def robot(self, name: object) -> KnownRobot:
-        """Return the robot of that name; the name may be left out if there is only one robot."""
+        """Return the robot with this name, or the only robot if the name is empty."""
         known = self.watch.robots
         if not name and len(known) == 1:
             return next(iter(known.values()))

@@ -25,7 +25,7 @@ WIDTH = 110
 """The maximum line width of a folded text [characters]."""
 MAX_STORIES = 10
 _PLAIN = re.compile(r"[^\W\d_][\w ]*[\w.!]")
-"""A text that needs no quotes, also between brackets."""
+"""Matches a text that needs no quotes, even between brackets."""
 _WORDS = frozenset(("null", "true", "false", "yes", "no", "on", "off"))
 _FOLDED = re.compile(r">[-+]?\s*")
 

@@ -22,12 +22,12 @@ class RobotKeys(NamedTuple):
     """The routing keys of one robot."""
 
     operator: str
-    """Questions to its exhibition."""
+    """The key for questions to the robot's exhibition."""
     config: str
-    """Orders about its files."""
+    """The key for orders about the robot's files."""
     command: str
     stop: str
-    """Commands to rest or to resume."""
+    """The key for commands to rest or to resume."""
     image: str
 
 

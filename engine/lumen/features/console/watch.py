@@ -1,4 +1,4 @@
-"""Watches all robots of a bus: requests the status and the new journal entries of each exhibition periodically."""
+"""All robots on a bus, with periodic requests for each exhibition's status and new journal entries."""
 
 import asyncio
 import time
@@ -29,7 +29,7 @@ class Changes:
         self._next = asyncio.Event()
 
     def tell(self) -> None:
-        """Count a change and wake all callers of `wait`. Call it in the loop."""
+        """Count a change and wake all callers of `wait`. Call it in the event loop."""
         self.count += 1
         self._next.set()
         self._next = asyncio.Event()
@@ -56,7 +56,7 @@ FILES_PERIOD = 3.0
 QUESTION_TIMEOUT = 2.0
 MAX_ROBOTS = 50
 FULL_PAGE = 100
-"""After a page with this many entries, the next one is requested at once."""
+"""After a page with at least this many entries, the next one is requested without a pause."""
 
 
 class Watch:
@@ -141,7 +141,7 @@ class Watch:
         self.changes.tell()
 
     def _know(self, robot: str) -> KnownRobot | None:
-        """Return the view of a robot and begin to watch a new one; None if there are MAX_ROBOTS already."""
+        """Return the view of a robot, and start watching a new robot; None if there are MAX_ROBOTS already."""
         if robot not in self.robots and len(self.robots) < MAX_ROBOTS:
             self.robots[robot] = KnownRobot(robot)
             self._tasks[robot] = self._loop.create_task(self._watch(self.robots[robot]))

@@ -45,9 +45,9 @@ class WrittenSentence(NamedTuple):
     path: NodePath
     """The path of this text itself."""
     language: str
-    """Its language, empty if it is for every language."""
+    """The text's language; empty if the text is for all languages."""
     alternative: int | None
-    """Its index among its alternatives, from 0; None if they are not a list."""
+    """The text's index among its alternatives, from 0; None if they are not a list."""
     text: str
 
     @property

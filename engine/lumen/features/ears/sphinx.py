@@ -21,7 +21,7 @@ _SOUNDS = {
     "l": "L", "m": "M", "n": "N", "o": "OW", "p": "P", "q": "K", "r": "R", "s": "S", "t": "T", "u": "UW", "v": "F",
     "w": "W", "x": "K S", "y": "Y", "z": "Z",
 }  # fmt: skip
-"""The sounds of letters, from the 39 of CMU's dictionary that are nearest to Indonesian, a phonetic spelling."""
+"""The nearest of the 39 sounds in CMU's dictionary for Indonesian, whose spelling is phonetic."""
 
 _LETTERS = re.compile("|".join(sorted(_SOUNDS, key=len, reverse=True)))
 
@@ -101,7 +101,7 @@ TINY = 1e-9
 
 
 class Sphinx(RankingRecogniser):
-    """Recognises speech by a language model made from the expected sentences, without any by that of English.
+    """Recognises speech with a language model of the expected sentences, or of general English if there are none.
 
     It is faster than real time. Raises ModuleError if the package or its model is missing.
     """

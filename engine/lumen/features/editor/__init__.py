@@ -1,4 +1,4 @@
-"""The language server's answers to an editor."""
+"""The language server for editors."""
 
 from lumen.feature import EditorRow, Feature, Subcommand
 

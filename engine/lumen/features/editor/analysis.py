@@ -1,4 +1,4 @@
-"""A project as an editor sees it: its files on disk with the unsaved texts, and what is known about them."""
+"""The analysis of a project as an editor shows it: its files on disk with the unsaved texts."""
 
 from collections.abc import Callable, Mapping
 from functools import cached_property

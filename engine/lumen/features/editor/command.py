@@ -12,7 +12,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Serve an editor until it ends the session; return 0."""
-    from lumen.features.editor.server import serve  # pygls takes 0.6 s
+    from lumen.features.editor.server import serve  # importing pygls takes 0.6 s
 
     serve()
     return 0

@@ -41,7 +41,7 @@ _SLOTS = {
 
 
 class Item(NamedTuple):
-    """A proposal of the editor."""
+    """A proposal that the editor shows."""
 
     text: str
     """The text that is inserted."""
@@ -50,7 +50,7 @@ class Item(NamedTuple):
     replaces: int
     """The number of characters before the cursor that the text replaces."""
     documentation: str = ""
-    """A longer description."""
+    """A longer description; empty if there is none."""
 
 
 def complete(analysis: Analysis, file: str, line: int, column: int) -> list[Item]:
@@ -132,7 +132,7 @@ class _Completion:
                 yield Item(f"{key}: ", "key", len(self.here.word), str(schema.get("description", "")))
 
     def rows(self, path: NodePath) -> Iterator[Item]:
-        """Yield names of phrases and answers for a key of `hears`, and the words that the key may begin with."""
+        """Yield names of phrases and answers for a key of `hears`, and the words that can begin the key."""
         before, there = self.here.before, self.here.document.value(path[:-1])
         part = _PART.search(before)
         wide = len(part[0]) if part else 0

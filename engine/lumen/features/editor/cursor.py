@@ -26,7 +26,7 @@ class Cursor(NamedTuple):
     word: str
     """The word before the cursor, which a completion replaces."""
     quote: str
-    """The quote before the word, empty without one."""
+    """The quote before the word, empty if there is none."""
     document: Document
     """The parsed lines around the cursor, in which `CURSOR_MARK` is inserted."""
 

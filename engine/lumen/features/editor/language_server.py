@@ -124,7 +124,7 @@ class LanguageServer(pygls_server.LanguageServer):
     async def settled(self, uri: str) -> tuple[Analysis, str] | None:
         """Return the project and file of a document after its project has been checked; None if it belongs to none.
 
-        Raises JsonRpcContentModified if the document changed meanwhile; the editor then repeats the request.
+        Raises JsonRpcContentModified if the document changes meanwhile, so that the editor repeats the request.
         """
         root, asked = root_of(Path(path_of(uri))), self._version(uri)
         while (task := self._checking.get(root) if root else None) and not task.done():
@@ -155,7 +155,7 @@ class LanguageServer(pygls_server.LanguageServer):
     def _tell(self, root: Path, analysis: Analysis) -> None:
         """Publish the findings file by file.
 
-        Open files without findings, and files that had some before, get an empty list.
+        Open files without findings, and files that no longer have any, receive an empty list.
         """
         encoder, found = self.encoder(analysis), dict[str, list[lsp.Diagnostic]]()
         for diagnostic in analysis.diagnostics:

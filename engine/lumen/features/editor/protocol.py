@@ -52,7 +52,7 @@ class ProtocolEncoder:
         return self._ranges[file]
 
     def uri(self, file: str) -> str:
-        """Return the URI of a file."""
+        """Return the absolute URI of one of the project's files."""
         return (Path(self.analysis.root) / file).absolute().as_uri()
 
     def location(self, place: Place) -> lsp.Location:

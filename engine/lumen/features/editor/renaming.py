@@ -102,7 +102,7 @@ def applied(analysis: Analysis, renaming: Renaming) -> Analysis:
 
 
 def refuse_harm(before: Sequence[Diagnostic], after: Sequence[Diagnostic]) -> None:
-    """Raise UsageError if the project has more findings, or more errors, after a renaming than before."""
+    """Raise UsageError if the project has more findings or errors after a renaming than before; ignore Python files."""
     # A skill's function still has the old name. Lint reports that, but the editor does not change Python.
     after = [each for each in after if not each.place.file.endswith(".py")]
     # An error hides other findings, such as unused names, so the number of findings may fall despite a new error.

@@ -31,7 +31,7 @@ class RunningExhibitions:
         return self._active.get(root, ())
 
     def follow(self) -> None:
-        """Request the states of all exhibitions repeatedly until `close` is called."""
+        """Request the states of all exhibitions repeatedly until `close` is called, then close their buses."""
         while not self._over.wait(ASK_EVERY):
             for root in list(self._roots()):
                 states = self._asked(root)
