@@ -49,7 +49,7 @@ def request(model: str, asked: Mapping[str, Any], passages: Sequence[str], tools
 
 
 def tool_name(event: str) -> str:
-    """Return an event's tool name: its first 64 characters, with `_` for each that is no letter, digit or `_`."""
+    """Return an event's tool name: its first 64 characters, with all but ASCII letters and digits replaced by `_`."""
     return re.sub(r"[^A-Za-z0-9_]", "_", event)[:64]
 
 
@@ -94,7 +94,7 @@ _log = logging.getLogger(__name__)
 
 
 class Answers(Module):
-    """Answers each question on `lumen.NAO.ask` with messages on `lumen.NAO.answer`: its sentences, then an empty end.
+    """Answers each question on `lumen.NAO.ask` with sentences on `lumen.NAO.answer`, then with an end without text.
 
     An answer without sentences can raise one of the events that the question offers, with data that matches its schema.
     Raises ModuleError if lumen.yaml has neither a language model nor embeddings.

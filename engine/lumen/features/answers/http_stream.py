@@ -16,7 +16,7 @@ from lumen.errors import ModuleError
 MAX_BYTES = 200_000
 """The maximum size of a response with its headers [bytes]; no answer of two sentences needs more."""
 LOOK = 0.1
-"""The time between two checks whether the response is still wanted [s]."""
+"""The time between two checks of whether the response is still wanted [s]."""
 PIECE = 4_096
 
 
@@ -27,7 +27,7 @@ def answered(
     """Send `body` as JSON, and yield the response's media type and an iterator of its bytes.
 
     Redirects are not followed. Raises ModuleError, never with the key in its message: at `deadline` (`time.monotonic`),
-    if `wanted` returns False, for more than `most` bytes with headers, a status other than 200, or an invalid or
+    if `wanted` returns False, for more than `most` bytes with headers, a status other than 200, an invalid URL or an
     unreachable server.
     """
     parts = urlsplit(url)
@@ -88,7 +88,7 @@ class _Bounded:
         self._reader = _BoundedReader(connection, deadline, wanted, most)
 
     def makefile(self, mode: str) -> io.BufferedReader:
-        """Return a buffered file for the limited reading of the connection; `mode` is ignored."""
+        """Return a buffered reader of the connection that enforces the limits; `mode` is ignored."""
         return io.BufferedReader(self._reader)
 
 

@@ -28,7 +28,7 @@ class Exchange:
         return await _first(timeout, self.echo, self.nobody) and not self.nobody.is_set()
 
     async def answer(self, timeout: float) -> Any:
-        """Return the next answer. Raises BusUnreachableError if none arrives within `timeout` [s] or can arrive."""
+        """Return the next answer. Raises BusUnreachableError after `timeout` [s], or if no process gets the message."""
         nobody = asyncio.ensure_future(self.nobody.wait())
         answer = asyncio.ensure_future(self.answers.get())
         try:

@@ -84,7 +84,7 @@ def order_of(command: str, fields: Fields, keys: RobotKeys, by: str) -> Order:
 
 
 def text_in(fields: Fields, name: str, most: int = MAX_NAME, *, needed: bool = True) -> str:
-    """Return a field's text, empty if missing. Raises UsageError if it is no string, too long, or blank but `needed`."""
+    """Return a field's text, empty if missing. Raises UsageError if it is no string, too long, or a needed blank."""
     value = fields.get(name, "")
     if not isinstance(value, str) or len(value) > most or (needed and not value.strip()):
         raise UsageError(f"`{name}` must be a string of {'1' if needed else '0'} to {most} characters")
