@@ -25,7 +25,7 @@ class KeptStory(NamedTuple):
     file: Path
     """The path of its file, relative to the project's folder."""
     remark: str
-    """How the robot's actions differ with today's files; empty if all are the same."""
+    """The recorded actions and those with today's files; empty if they are the same."""
 
 
 def keep_story(root: Path, position: int, robot: str = "", *, visitor: str = "", name: str = "") -> KeptStory:

@@ -31,7 +31,7 @@ class SpokenNames:
 
     def without(self, text: str) -> str:
         """Return the text with each of these names replaced by `…`, regardless of case."""
-        for name in sorted(self._names, key=len, reverse=True):  # Ani Putri before Ani
+        for name in sorted(self._names, key=len, reverse=True):  # longest first: Ani Putri before Ani
             text = re.sub(rf"(?<!\w){re.escape(name)}(?!\w)", LEFT_OUT, text, flags=re.IGNORECASE)
         return text
 

@@ -84,7 +84,10 @@ def order_of(command: str, fields: Fields, keys: RobotKeys, by: str) -> Order:
 
 
 def text_in(fields: Fields, name: str, most: int = MAX_NAME, *, needed: bool = True) -> str:
-    """Return a field's text, empty if missing. Raises UsageError if it is no string, too long, or a needed blank."""
+    """Return a field's text, empty if it is missing.
+
+    Raises UsageError if it is not a string, longer than `most`, or blank although `needed`.
+    """
     value = fields.get(name, "")
     if not isinstance(value, str) or len(value) > most or (needed and not value.strip()):
         raise UsageError(f"`{name}` must be a string of {'1' if needed else '0'} to {most} characters")

@@ -18,7 +18,7 @@ HEARTBEAT = 1.0
 POSE_TIME = 20.0
 """The time limit of one pose [s]: the first one loads the model."""
 LINGER, RETRY = 5.0, 5.0
-"""How long the process runs after the last viewer has left, and the pause before a failed one restarts [s]."""
+"""The time for which the process outlives the last viewer, and the pause before a failed one restarts [s]."""
 
 
 class Poses:

@@ -8,11 +8,11 @@ from typing import Any
 ALWAYS, FACE, TOUCH, SPEAKS, NOBODY = "always", "face", "touch", "speaks", "nobody"
 """The reasons to listen or not to listen, as published on the route `listening`."""
 AFTER_FACE, AFTER_TOUCH = 3.0, 10.0
-"""How long the ears stay open by default after a face and after a touch [s]: people look away while they think, and
-need time to walk up.
+"""The default times for which the ears stay open after a face and after a touch [s]: people look away while they
+think, and need time to walk up.
 """
 LEAD = 1.0
-"""How long before a face or touch the ears count as open [s]: people nearby begin to speak before they look."""
+"""The time before a face or touch for which the ears count as open [s]: people nearby speak before they look."""
 MAX_SPANS = 100
 """The maximum number of open spans that are kept; a sound lasts at most two minutes."""
 NO_DISTANCE = "faces come without a `distance`, so `within` has no effect: delete it, or use Lumen's own eyes"

@@ -21,7 +21,7 @@ from lumen.run.module import Module
 from lumen.run.sound import Sound, sound_of
 
 LOST_AFTER = 4.0
-"""How long the states of a silent brain remain valid [s]."""
+"""The time for which the states of a silent brain remain valid [s]."""
 
 
 class ActiveStates:
@@ -60,7 +60,7 @@ INTERRUPTS = ("stop",)
 TICK = 0.05
 """The time resolution at which changes of listening are published [s]."""
 PADDING = 0.3
-"""How much of the sound before and after speech the recogniser receives [s]."""
+"""The time before and after speech that the recogniser also receives [s]."""
 
 
 class Ears(Module):

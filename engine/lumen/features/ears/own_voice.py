@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 ECHO = 0.3
-"""How long the room echoes the robot's voice after its last word [s]."""
+"""The time for which the room echoes the robot's voice after its last word [s]."""
 LONGEST = 60.0
 """A text without a reported end counts as finished after this long [s], so the robot does not stay deaf."""
 MAX_KEPT = 100

@@ -53,7 +53,7 @@ def _cursor(lines: list[str], line: int, column: int) -> Cursor | None:
     head, tail = lines[line - 1][: column - 1], lines[line - 1][column - 1 :]
     found = _BEFORE.search(head)
     word = found[0] if found else ""
-    begun = head[: -len(word)] if word.startswith(("#", "*", "&", "@", "`", "%")) else head  # otherwise YAML syntax
+    begun = head[: -len(word)] if word.startswith(("#", "*", "&", "@", "`", "%")) else head  # these begin YAML syntax
     for middle in [*_attempts(head, tail), *(_attempts(begun, tail) if begun != head else ())]:
         content = "\n".join([*lines[: line - 1], middle, *lines[line:]])
         document, _ = parse("cursor", content.encode("utf-8", "surrogatepass"))

@@ -3,7 +3,7 @@
 import re
 
 ANCESTORS_WHOLE, LINES_WHOLE = 3, 120
-"""How many of the innermost enclosing keys can be included with their whole blocks, and a block's maximum [lines].
+"""The number of innermost enclosing keys whose whole blocks can be included, and a block's maximum length [lines].
 
 Only the lines of outer keys are included, without their blocks.
 """
