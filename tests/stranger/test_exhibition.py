@@ -185,7 +185,7 @@ def test_a_function_is_checked_completed_and_described(stranger: Path, hall: Pat
     found = signature(analysis, *place(analysis, HELLO, "shout('hello', |2"))
     assert found
     assert (found.label, found.active) == ("shout(text: text, marks: number)", 1)
-    assert found.documentation == "The text in capital letters, with exclamation marks. Gives text."
+    assert found.documentation == "The text in capital letters, with exclamation marks. Returns text."
 
 
 FUNCTIONS = """

@@ -64,7 +64,7 @@ def test_the_signature_shows_the_argument_that_is_written() -> None:
     found = signature(analysis, *at(analysis, BEHAVIOR, "hello('Budi', "))
     assert found
     assert (found.label, found.active) == ("hello(name: text, hour: number)", 1)
-    assert found.documentation == "How to greet. Gives text."
+    assert found.documentation == "How to greet. Returns text."
 
 
 def test_the_definition_and_all_uses() -> None:

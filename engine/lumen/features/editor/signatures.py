@@ -59,7 +59,7 @@ def _of_project(analysis: Analysis, function: FunctionDefinition, active: int) -
     shown = tuple(f"{name}: {' or '.join(kinds)}" for name, kinds in function.parameters.items())
     gives = " or ".join(function.returns) if len(function.returns) < 4 else "anything"
     says = function.described(settings.languages[0] if settings and settings.languages else "")
-    return FunctionSignature(function.name, shown, active, f"{says} Gives {gives}.".strip())
+    return FunctionSignature(function.name, shown, active, f"{says} Returns {gives}.".strip())
 
 
 def _of(name: str, active: int) -> FunctionSignature:
@@ -70,4 +70,4 @@ def _of(name: str, active: int) -> FunctionSignature:
     shown = tuple(f"{parameter}: {kind}" for parameter, kind in zip(named, kinds, strict=False))
     says = (inspect.getdoc(call) or "").partition("\n\n")[0]
     gives = " or ".join(sorted(function.returns)) if len(function.returns) < 4 else "anything"
-    return FunctionSignature(name, shown, active, f"{says} Gives {gives}.".strip())
+    return FunctionSignature(name, shown, active, f"{says} Returns {gives}.".strip())

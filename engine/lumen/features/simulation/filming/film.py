@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumen.errors import RobotModelError
+from lumen.features.simulation.filming.options import FILM_SIZE
 from lumen.features.simulation.filming.shots import (
     FIELD_OF_VIEW,
     CameraPlace,
@@ -33,7 +34,6 @@ from lumen.robot.command_table import speech_duration
 
 FILM_RATE = 25
 FilmSize = tuple[int, int]
-FILM_SIZE: FilmSize = (1920, 1080)
 
 TITLE_SHOWN, TITLE_FADES = 3.0, 0.6
 """The duration of the title, and of its fading in or out [s]."""

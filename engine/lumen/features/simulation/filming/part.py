@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from lumen.errors import RobotFailedError, UsageError
-from lumen.features.simulation.filming.options import FilmPlan
+from lumen.features.simulation.filming.options import FILM_SIZE, FilmPlan
 from lumen.features.simulation.filming.progress import FilmProgress
 from lumen.language.commands import Command, Play, Say, Start
 from lumen.language.events import Event
@@ -63,7 +63,7 @@ class FilmPart(Part, Observer):
         title: str = "",
         progress: FilmProgress | None = None,
     ) -> None:
-        from lumen.features.simulation.filming.film import FILM_SIZE, Film
+        from lumen.features.simulation.filming.film import Film
         from lumen.features.simulation.filming.shots import FilmMoment
         from lumen.features.simulation.offers import SimulatedRobot
 
