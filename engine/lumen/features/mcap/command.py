@@ -1,4 +1,4 @@
-"""`lumen record`: the messages of a running exhibition, into a file for Foxglove and Lichtblick."""
+"""`lumen record`: records a running exhibition's messages into a file for Foxglove and Lichtblick."""
 
 import argparse
 import json
@@ -68,7 +68,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Record, repair a file or set a mark; return the exit code, 0 on success.
 
-    Raises UsageError if an option is invalid or the file can't be written.
+    Raises UsageError if an option is invalid or the file can't be written, RecordingError if it can't be repaired.
     """
     if options.recover:
         return _recover(options)
@@ -150,7 +150,7 @@ def _wait(bus: Bus, tape: FileTape, span: float | None) -> None:
 
 
 def _running_project(root: Path, reached: Reached) -> Project:
-    """Return the running project if its files are kept, else the one in the folder.
+    """Return the running project if its files are stored, else the project in the folder `root`.
 
     Raises UsageError if it has errors.
     """

@@ -1,4 +1,4 @@
-"""Removes a person from all recordings; one that is being written is rewritten by its own process."""
+"""Removes a person from all recordings; a process that is writing a recording rewrites it itself."""
 
 from pathlib import Path
 
@@ -14,9 +14,7 @@ from lumen.run.forgetting.files import attempt, await_others
 
 
 def forget_recordings(folder: Path, name: str, found: Forgetting) -> None:
-    """Remove a person from all recordings in a project's state folder and those noted there.
-
-    The result is added to `found`.
+    """Remove a person from all recordings in a project's state folder and those noted there; add results to `found`.
 
     A recording that another process is writing is left to that process, and reported if the name stays.
     """

@@ -19,7 +19,7 @@ from lumen.run.bundles import packed
 from lumen.run.snapshot_store import SnapshotStore
 
 NOTES = "lumen"
-"""The name of the metadata about the running files; they are added again after each reload."""
+"""The name of the metadata about the running files, which is added again after each reload."""
 
 
 def notes_of(project: Project) -> RecordedNotes:
@@ -40,7 +40,7 @@ def notes_of(project: Project) -> RecordedNotes:
 
 
 def bundle_files(root: Path, hashes: Sequence[str], robot: str = "") -> Iterator[RecordedFile]:
-    """Yield the files of these bundles, each as a ZIP, if they are kept or still in the project's folder."""
+    """Yield a ZIP with the files of each bundle; skip bundles neither stored nor in the project's folder."""
     store = SnapshotStore(Home(home_of(root, robot)))
     for hash in dict.fromkeys(hashes):
         files = store.files(hash)
@@ -53,7 +53,7 @@ def bundle_files(root: Path, hashes: Sequence[str], robot: str = "") -> Iterator
 
 
 def journal_files(root: Path, began: float, ended: float, robot: str = "") -> Iterator[RecordedFile]:
-    """Yield the journal's files that cover the time between two moments [s since 1970]."""
+    """Yield the journal files that cover any time from `began` to `ended` [s since 1970]; skip unreadable files."""
     for file, header in headers(home_of(root, robot) / JOURNAL_FOLDER):
         with suppress(OSError):
             changed = file.stat().st_mtime

@@ -1,6 +1,4 @@
-"""The part that records a running exhibition: into the requested file, and the last minutes if the project wants
-them.
-"""
+"""The part that records a running exhibition: all of it into a requested file, and its last minutes into a ring."""
 
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -31,10 +29,10 @@ Telling = Callable[[str], None]
 
 
 class RecordingPart(Part):
-    """Records, and repairs what an earlier run left incomplete; the first part, since it is closed last.
+    """Records the bus, and repairs incomplete recordings of earlier runs; the first part, because it is closed last.
 
-    With `ring`, which only the run that owns the home may set, it keeps the last minutes if the project wants that.
-    Raises UsageError if `file` can't be written.
+    `ring`, which only the run that owns the home can set, allows both the repair and, if the project has
+    `record: {ring: …}`, the ring. Raises UsageError if `file` can't be written, MissingExtraError without the extra.
     """
 
     patient = True
@@ -68,29 +66,29 @@ class RecordingPart(Part):
 
     @property
     def trouble(self) -> str:
-        """Why something can't be recorded, empty if all can."""
+        """The reason why a tape fails; empty if none fails."""
         return self._recorder.trouble if self._recorder else ""
 
     def marking(self) -> str:
-        """Return a text about the recording of this moment; empty if nothing is recorded."""
+        """Return a sentence about where this moment is recorded; empty without a ring or a working file."""
         if self._ring:
             minutes = self._said.ring / 60
             return f"the last {minutes:g} min and the next minute are kept in {self._folder.path}"
         return f"everything is recorded into {self._file.path}" if self._file and not self._file.trouble else ""
 
     def use(self, project: Project) -> None:
-        """Record the messages of another bundle from now on."""
+        """Use the message schemas of another bundle from now on."""
         self._project = project
         if self._recorder:
             self._recorder.use(project)
 
     def summary(self) -> Iterator[str]:
-        """Yield a line about the recorded file."""
+        """Yield a line about the recorded file, or its error; nothing without a file."""
         if self._file:
             yield self._file.trouble or f"recorded: {self._file.path}, {counted(self._file.messages, 'message')} so far"
 
     def close(self) -> None:
-        """Finish the recordings, and report messages that were dropped."""
+        """Finish the recordings, report dropped messages, and wait for repairs."""
         if self._recorder:
             self._recorder.close()
             if dropped := self._recorder.dropped:
@@ -117,7 +115,7 @@ class RecordingPart(Part):
             raise UsageError(f"{file} can't be recorded: {getattr(error, 'strerror', None) or error}") from None
 
     def _ringing(self) -> RingTape | None:
-        """Return the ring, None if a package is missing: the exhibition starts without it."""
+        """Return the ring; if a package is missing, report that and return None."""
         try:
             demand_recording()
             return RingTape(
@@ -132,20 +130,17 @@ class RecordingPart(Part):
             return None
 
     def _kept(self, began: float, ended: float, pieces: Sequence[Path]) -> Iterable[Recorded]:
-        """Return the files, the journal and the robot's shape.
-
-        A recording of these pieces can't be understood without them.
-        """
+        """Return the project's files, the journal and the robot's shape, which explain a recording of these pieces."""
         look = self._view.look(began) if self._view else ()
         return [*self._explaining(pieces), *journal_files(self._root, began, ended, self._robot), *look]
 
     def _rescued(self, pieces: Sequence[Path]) -> Iterable[Recorded]:
-        """Return the files, the journal and the shape for a recording of pieces that an earlier run left."""
+        """Return the project's files, the journal and the robot's shape for the pieces that an earlier run left."""
         times = [piece.stat().st_mtime for piece in pieces]
         return self._kept(min(times) - PIECE_PERIOD, max(times), pieces)
 
     def _explaining(self, pieces: Sequence[Path]) -> Iterable[Recorded]:
-        """Yield the files that ran during these pieces."""
+        """Return the files of each bundle that ran during these pieces; skip unreadable pieces."""
         hashes = list[str]()
         for piece in pieces:
             with suppress(RecordingError):
@@ -157,7 +152,7 @@ class RecordingPart(Part):
 
 
 def make(services: Services) -> RecordingPart:
-    """Make the part that records the bus and repairs what an earlier run left incomplete."""
+    """Make the part that records the bus and repairs incomplete recordings of earlier runs."""
     plan = services.plan
     file, patient = plan.options.get("record"), plan.story is not None and not plan.roles
     tell = services.tell("recording")

@@ -1,4 +1,4 @@
-"""Records a bus on a thread of its own, so that neither publishers nor ticks wait for a disk."""
+"""Records a bus on a separate thread: neither publishers nor ticks wait for a disk, unless it is patient."""
 
 import logging
 import threading
@@ -20,15 +20,15 @@ from lumen.upkeep.drops import DropLog
 from lumen.upkeep.threads import WatchedThread
 
 MAX_WAITING = 20_000
-"""The most messages that may wait to be written; beyond it the oldest are dropped and counted."""
+"""The most messages that wait to be written; beyond it, publishers wait if it is patient, else the oldest are dropped."""
 WRITE_PERIOD = 0.1
 """The time between two writes [s]."""
 FORGETTING_SPACING = 2.0
-"""The time between two removals of names [s], each of which rewrites files."""
+"""The time between two removals of names [s]: each rewrites files."""
 FORGETTING_SPAN = 10.0
 """The time for which a forgotten name is also removed from new messages [s]: the request to forget contains it."""
 MAX_FORGOTTEN = 100
-"""The most names that are removed at a time."""
+"""The maximum number of names that are removed at a time."""
 FORGOTTEN_ROUTE, IMAGE_ROUTE = "forgotten", "image"
 FORGOTTEN_KEY = DEFAULT_KEYS[FORGOTTEN_ROUTE].partition("{robot}")[2]
 
@@ -36,7 +36,7 @@ _log = logging.getLogger(__name__)
 
 
 class RecordingTape(Protocol):
-    """Receives items to record; errors of a disk do not raise, but are described in `trouble`."""
+    """Receives items to record; disk errors are not raised, but described in `trouble`."""
 
     trouble: str
 
@@ -47,11 +47,11 @@ class RecordingTape(Protocol):
         ...
 
     def settle(self, now: float) -> None:
-        """Complete what is due at `now` [s since 1970]; no item is waiting."""
+        """Complete the chunks, pieces and recordings that are due at `now` [s since 1970]."""
         ...
 
     def forget(self, people: Sequence[PersonName]) -> None:
-        """Remove these people from what was written."""
+        """Remove these people from the items already written."""
         ...
 
     def close(self) -> None: ...
@@ -65,8 +65,9 @@ class _Heard(NamedTuple):
 class Recorder:
     """Writes the messages of a bus to tapes, from `start` to `close`.
 
-    If it is `patient`, publishers wait for it; else messages are dropped when a disk is too slow, which is logged and
-    counted in `dropped`. Without `camera` no image is subscribed to. `extra` returns further items for a message.
+    If it is `patient`, publishers wait for a slow disk; otherwise messages are dropped, logged and counted in
+    `dropped`. Without `camera`, it does not subscribe to images. `extra` returns further items for a message and its
+    arrival time [s since 1970].
     """
 
     def __init__(
@@ -93,7 +94,7 @@ class Recorder:
 
     @property
     def trouble(self) -> str:
-        """Why something can't be written, empty if all can."""
+        """The reason why a tape fails; empty if none fails."""
         return next((tape.trouble for tape in self.tapes if tape.trouble), "")
 
     @property
@@ -107,19 +108,19 @@ class Recorder:
         self._undo = [self._bus.subscribe(pattern, self._hear) for pattern in _patterns(self._project, self._camera)]
 
     def use(self, project: Project) -> None:
-        """Record the messages of another bundle from now on."""
+        """Use the message schemas of another bundle from now on, and record its metadata."""
         self._news.append(project)
 
     def mark(self, why: str) -> None:
-        """Mark this moment on all tapes, for the reason `why`, so that they keep what happened around it.
+        """Mark this moment on all tapes, for the reason `why`.
 
-        Any thread may call it.
+        Any thread can call this method.
         """
         for tape in self.tapes:
             tape.mark(why, time.time())
 
     def close(self, patience: float = 20.0) -> None:
-        """Write what is left, for at most `patience` [s], and end; further calls do nothing."""
+        """Write the waiting messages, for at most `patience` [s], and close all tapes; further calls do nothing."""
         for undo in self._undo:
             undo()
         self._undo = []
@@ -131,7 +132,7 @@ class Recorder:
 
     def _hear(self, message: Message) -> None:
         if message.id.endswith(COPY):
-            return  # the message itself arrives too
+            return  # the original message arrives too
         heard = _Heard(message, time.time())
         if not self._patient:
             self._drops.push(self._waiting, heard, lambda each: each.message.key, "the disk is too slow for them")
@@ -186,7 +187,7 @@ class Recorder:
 
     def _look_for_names(self, message: Message, came: float) -> None:
         if message.key != self._project.key_of(FORGOTTEN_ROUTE) and not message.key.endswith(FORGOTTEN_KEY):
-            return  # another robot's memory counts too: what that robot hears is recorded as well
+            return  # a name that another robot forgets counts too: its messages are recorded as well
         match message.body:
             case {"name": str(name)} if (key := name_key(name)) and len(self._forgotten) < MAX_FORGOTTEN:
                 person = PersonName(name)
@@ -194,7 +195,7 @@ class Recorder:
                 self._forgotten[key] = person, came + FORGETTING_SPAN
 
     def _scrubbed(self, message: Message, came: float) -> Message:
-        """Return a message without people who were forgotten recently."""
+        """Return a message without the names that were forgotten within the last FORGETTING_SPAN."""
         for key, (person, until) in list(self._forgotten.items()):
             if came > until:
                 del self._forgotten[key]
@@ -207,7 +208,7 @@ class Recorder:
 def _patterns(project: Project, camera: bool) -> Sequence[str]:
     """Return the patterns to subscribe to: everything, if the camera is recorded.
 
-    Otherwise they are all known keys except that of images, so that no images are rendered.
+    Otherwise they are all known keys except the image key: without a subscriber, no images are rendered.
     """
     if camera:
         return ("#",)

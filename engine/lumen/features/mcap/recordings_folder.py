@@ -1,4 +1,4 @@
-"""The recordings of an exhibition: those in its home, and notes of those that were begun elsewhere."""
+"""An exhibition's recordings: the files in its home, and notes about those that are being written anywhere."""
 
 import os
 import uuid
@@ -25,14 +25,14 @@ class BegunRecording(NamedTuple):
 
 
 class RecordingsFolder:
-    """The folder `recordings/` in the home of an exhibition."""
+    """The folder `recordings/` in an exhibition's home."""
 
     def __init__(self, home: Path) -> None:
         self.path = home / RECORDINGS_FOLDER
         self.ring = self.path / RING_FOLDER
 
     def make(self) -> None:
-        """Create the folder. Raises OSError if that fails."""
+        """Create the folder and the ring's. Raises OSError if that fails."""
         private_folder(self.path.parent)
         private_folder(self.path)
         private_folder(self.ring)
@@ -47,7 +47,7 @@ class RecordingsFolder:
         return sorted(self.ring.glob(f"*{SUFFIX}"))
 
     def begin(self, path: Path) -> Home | None:
-        """Note that a recording is being written until the result is released; None if the note can't be written."""
+        """Write and return a note that a recording is being written, until it is released; return None on failure."""
         note = Home(self.path / f"{uuid.uuid4().hex[:12]}{_NOTE}")
         try:
             self.make()
@@ -59,7 +59,7 @@ class RecordingsFolder:
         return note
 
     def begun(self) -> Iterator[BegunRecording]:
-        """Yield all begun recordings that exist, and delete the notes of others."""
+        """Yield all begun recordings that exist; delete the notes of others that no process writes."""
         for folder in sorted(self.path.glob(f"*{_NOTE}")):
             note = Home(folder)
             said = note.read("path")
@@ -73,7 +73,7 @@ class RecordingsFolder:
     def prune(self, now: float, keep: float, size: float) -> None:
         """Delete recordings older than `keep` days, and the oldest beyond `size` MB in total.
 
-        The newest is never deleted for its size.
+        The newest is never deleted for its size, and none that is being written is deleted.
         """
         left = 0
         begun = {each.path.absolute() for each in self.begun() if each.written}

@@ -1,4 +1,4 @@
-"""Repairs recordings that a killed run left incomplete, at the next start."""
+"""Repairs, at the next start, recordings that a killed run left incomplete."""
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
@@ -14,13 +14,14 @@ from lumen.language.counts import counted
 from lumen.upkeep.threads import WatchedThread
 
 Explaining = Callable[[Sequence[Path]], Iterable[Recorded]]
-"""Returns what a recording of these pieces needs to be understood."""
+"""Returns the items that explain a recording of these pieces."""
 
 
 class RecordingRescue:
-    """Repairs incomplete recordings on a thread of its own, and reports them with `tell`.
+    """Repairs incomplete recordings on a separate thread, and reports them with `tell`.
 
-    Pieces of a ring are kept as a recording, since their run ended unexpectedly. Without any work it starts no thread.
+    The remaining pieces of a ring are joined into a recording, because their run ended unexpectedly. The thread is
+    started only if there is work.
     """
 
     def __init__(
@@ -69,7 +70,7 @@ def _telling(tell: Callable[[str], None], path: Path) -> Iterator[None]:
 
 
 def remove_drafts(path: Path) -> None:
-    """Delete incomplete drafts of a recording."""
+    """Delete a recording's incomplete drafts."""
     for draft in path.parent.glob(f"{path.name}.*.new"):
         with suppress(OSError):
             draft.unlink()

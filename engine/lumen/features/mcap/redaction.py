@@ -1,4 +1,4 @@
-"""Removes a person from a recording: their name from all messages, and all pictures and sounds around them."""
+"""Removes a person from a recording: their name, and all pictures and sounds from around the time of each mention."""
 
 import tempfile
 from collections.abc import Mapping
@@ -17,13 +17,13 @@ from lumen.journal.redaction import redact
 from lumen.language.people import PersonName
 
 AROUND = 600.0
-"""The time before and after a person's name in which pictures and sounds may be of them [s]."""
+"""The time before and after a person's name in which pictures and sounds are removed [s]."""
 PICTURE_FORM = "foxglove.CompressedImage"
 SOUND_FORMS = ("lumen.recording", "lumen.wav.stream")
 
 
 class Redaction(NamedTuple):
-    """The numbers of items in a recording that name a person or may show one."""
+    """The numbers of items in a recording that name a person or may show them."""
 
     messages: int = 0
     """The number of messages that name the person."""
@@ -97,7 +97,7 @@ def _without_person(item: RecordedFile, person: PersonName) -> RecordedFile:
 
 
 def _merged(times: list[int]) -> list[tuple[int, int]]:
-    """Return the merged spans around these times [ns since 1970]."""
+    """Return the spans from AROUND before to AROUND after these times [ns since 1970]; merge overlapping spans."""
     spans = list[tuple[int, int]]()
     around = int(AROUND * NANO)
     for at in sorted(times):

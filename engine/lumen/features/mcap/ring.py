@@ -1,4 +1,4 @@
-"""The last minutes of an exhibition, recorded all the time and kept when something happens."""
+"""The last minutes of an exhibition, recorded continuously and kept if a moment is marked."""
 
 import logging
 import re
@@ -18,21 +18,21 @@ from lumen.language.people import PersonName
 from lumen.language.retention import RecordingSettings
 
 PIECE_PERIOD = 30.0
-"""The length of a piece of the ring [s]: at most so much more than requested is kept."""
+"""The length of a piece of the ring [s], and the most that is kept beyond the requested time."""
 AFTER = 60.0
-"""The time for which recording continues after something happened [s]."""
+"""The time for which recording continues after a mark [s]."""
 RETRY_PERIOD = 30.0
-"""The pause after an error of the disk [s]."""
+"""The pause after a disk error [s]."""
 
 _log = logging.getLogger(__name__)
 
 
 class RingTape:
-    """Keeps the last `settings.ring` seconds in pieces, and joins them to a recording when a moment is marked.
+    """Keeps the last `settings.ring` seconds in pieces, and joins them into a recording if a moment is marked.
 
-    It continues for `AFTER` s; further marks extend that, up to the ring's length in all. Consecutive recordings do not
-    overlap. `first` returns the items that begin each piece; `last` returns the end of a recording from the times of
-    its beginning and end [s since 1970] and its pieces. `kept` receives the path of each recording.
+    It records for `AFTER` s after a mark; further marks extend this, up to the ring's length after the first mark.
+    Consecutive recordings do not overlap. `first` returns the first items of each piece; `last` returns a recording's
+    last items from the times when it began and ended [s since 1970] and its pieces. `kept` receives its path.
     """
 
     def __init__(
@@ -51,7 +51,7 @@ class RingTape:
         self._count = 0
 
     def write(self, items: Sequence[Recorded], now: float) -> None:
-        """Write items, and begin a piece if necessary."""
+        """Write items, and begin a piece if necessary; drop them during the pause after an error."""
         if self._file is None and (items and now >= self._retry):
             self._begin(now)
         if self._file:
@@ -61,7 +61,7 @@ class RingTape:
                 self._fail(error, now)
 
     def mark(self, why: str, now: float) -> None:
-        """Keep the last minutes and the next ones for this reason."""
+        """Keep the last minutes and the next `AFTER` s; the first reason `why` becomes the recording's name."""
         if not self._why:
             self._why, self._marked = why, now
         self._until = min(now + AFTER, self._marked + max(AFTER, self._settings.ring))
@@ -80,7 +80,7 @@ class RingTape:
             self._fail(error, now)
 
     def forget(self, people: Sequence[PersonName]) -> None:
-        """Remove people from all pieces and kept recordings."""
+        """Remove people from all pieces and kept recordings; log those that can't be rewritten."""
         self._end()
         for file in [*(piece for _, piece in self._pieces), *self._folder.files()]:
             for person in people:
@@ -92,7 +92,7 @@ class RingTape:
                     _log.warning("a recording still names a person who should be forgotten: %s", error)
 
     def close(self) -> None:
-        """Keep what is marked, and delete the rest of the ring."""
+        """Keep the pieces if a moment is marked, else delete them."""
         try:
             if self._why:
                 self._keep(time.time())
@@ -122,7 +122,7 @@ class RingTape:
                 self._fail(error, time.time())
 
     def _drop(self, now: float) -> None:
-        """Delete the pieces that ended longer ago than the ring's length, except those to be kept."""
+        """Delete the pieces that ended more than the ring's length before the mark, or before `now` without one."""
         latest = self._marked if self._why else now
         while self._pieces and self._ended(0) < latest - self._settings.ring:
             with suppress(OSError):
@@ -134,7 +134,7 @@ class RingTape:
         return after[0][0] if after else self._pieces[number][0] + (PIECE_PERIOD if self._file else 0.0)
 
     def _keep(self, now: float) -> None:
-        """Join the pieces to a recording and delete them."""
+        """Join the pieces into a recording, delete them, and prune the folder; do nothing without pieces."""
         why, self._why = self._why, ""
         self._end()
         pieces = [piece for _, piece in self._pieces]
@@ -151,7 +151,7 @@ class RingTape:
         self._kept(path)
 
     def _fail(self, error: Exception, now: float) -> None:
-        """Report an error once, and try again later; existing pieces stay."""
+        """Report the first error, and retry after RETRY_PERIOD; existing pieces stay."""
         self._retry = now + RETRY_PERIOD
         if not self.trouble:
             self.trouble = (

@@ -1,4 +1,4 @@
-"""The robot as Foxglove shows it: the places and shapes of its links."""
+"""The robot for Foxglove: the poses and shapes of its links."""
 
 import math
 from collections.abc import Callable, Iterator
@@ -16,13 +16,13 @@ from lumen.robot.links import BodyLinks, LinkShape, links_of
 from lumen.robot.sense_codec import decode_reading
 
 FRAMES, LOOK = ".frames", ".look"
-"""The suffixes of the joints' topic for the links' frames and for their shapes."""
+"""The suffixes of the joints' topic for the links' frames and shapes."""
 
 
 class RobotView:
-    """Converts a robot's joints to frames.
+    """Converts a robot's joint readings to its links' frames.
 
-    Without the extra `simulation` there are none, and `tell` receives the reason.
+    Without the extra `simulation` or a model it yields none, and `tell` receives the reason.
     """
 
     def __init__(self, project: Project, tell: Callable[[str], None] = lambda text: None) -> None:
@@ -35,7 +35,7 @@ class RobotView:
             tell(f"the recording shows no robot: {error}")
 
     def __call__(self, message: Message, came: float) -> Iterator[RecordedMessage]:
-        """Yield the frames of the links for a message with the joints."""
+        """Yield the links' frames for a message with finite joint angles; nothing for other messages."""
         if self._links is None or message.key != self._topic:
             return
         joints = decode_reading(Sense.JOINT, message.body, tuple(self._body.joints))

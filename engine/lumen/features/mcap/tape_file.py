@@ -1,4 +1,4 @@
-"""A recording in one file, from the beginning to the end."""
+"""Records into one file, from its creation to `close`."""
 
 import logging
 import time
@@ -19,10 +19,10 @@ _log = logging.getLogger(__name__)
 class FileTape:
     """Writes one recording.
 
-    `first` are its first items, and `last` returns the last ones from the beginning [s since 1970].
+    `first` are its first items; `last` receives the time when it began [s since 1970] and returns its last items.
 
-    After an error of the disk, which is reported once, the file stays as far as it was written. Raises OSError or
-    LumenError if it can't be created.
+    A disk error is reported once and ends the recording; the items already written stay. Raises OSError or LumenError
+    if the file can't be created.
     """
 
     def __init__(
@@ -40,14 +40,14 @@ class FileTape:
         self.write(list(first), self._began)
 
     def write(self, items: Sequence[Recorded], now: float) -> None:
-        """Write items, unless an error of the disk has ended the recording."""
+        """Write items, unless an error has ended the recording."""
         self._try(lambda file: file.write(items))
 
     def mark(self, why: str, now: float) -> None:
         """Do nothing: the whole recording is kept."""
 
     def settle(self, now: float) -> None:
-        """Complete a chunk if one is due."""
+        """Complete a chunk and sync the file, each if it is due."""
         self._try(lambda file: file.settle())
 
     def forget(self, people: Sequence[PersonName]) -> None:
@@ -73,7 +73,7 @@ class FileTape:
         self._file = reopened(self.path, redacted(self.path, person)[1])
 
     def _try(self, work: Callable[[RecordingFile], None]) -> None:
-        """Run `work` with the file; an error of the disk ends only the recording."""
+        """Run `work` with the file if it is open; an error ends the recording, and is not raised."""
         if self._file is None:
             return
         try:

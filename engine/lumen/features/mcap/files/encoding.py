@@ -1,4 +1,4 @@
-"""Messages of a bus as items of a recording: JSON with its schema, pictures as images."""
+"""Encodes bus messages as items of a recording: JSON with its schema, and pictures as images."""
 
 import base64
 import json
@@ -13,16 +13,16 @@ from lumen.language.projects import Project
 from lumen.ports import Message
 
 ORIGIN_KEY = "_lumen"
-"""The key of a message's origin in its recorded body; a body that has the key itself is put into `value`."""
+"""The key of a message's origin in its recorded body; a body that already has this key is wrapped in `value`."""
 PICTURE = "data:image/jpeg;base64,"
 ABOUT = ".about"
-"""The suffix of a picture's topic for the rest of its message."""
+"""The suffix of the topic for the other fields of a picture's message."""
 CAMERA = "camera"
 """The frame of reference of pictures."""
 MAX_NANOSECONDS = 2**63 - 1
 """MCAP's latest time, in the year 2262."""
 MAX_TOPICS = 4_096
-"""The most keys whose channels are cached."""
+"""The maximum number of cached channels."""
 
 _ORIGIN_SCHEMA = {
     "type": "object",
@@ -34,7 +34,7 @@ _ORIGIN_SCHEMA = {
 
 
 def nanoseconds(moment: float) -> int:
-    """Return a time [s since 1970] in [ns], limited to MCAP's range: a sender may send any number."""
+    """Convert a time from [s] to [ns] since 1970, limited to MCAP's range because a sender can send any number."""
     return min(max(int(moment * NANO), 0), MAX_NANOSECONDS)
 
 
@@ -47,7 +47,7 @@ class MessageEncoder:
         self.use(project)
 
     def use(self, project: Project | None) -> None:
-        """Encode with the schemas of this project from now on; without a project, with none."""
+        """Encode with this project's schemas from now on; with None, without schemas."""
         routes = project.routes.values() if project else ()
         self._schemas = {
             key: (route.schema, project.messages[route.schema])
@@ -58,7 +58,7 @@ class MessageEncoder:
         self._channels = {}
 
     def encode(self, message: Message, came: float) -> Iterator[RecordedMessage]:
-        """Yield the items for a message that arrived at `came` [s since 1970, in UTC]."""
+        """Yield the item for a message that arrived at `came` [s since 1970, in UTC]; a picture is a separate item."""
         at, sent = nanoseconds(came), nanoseconds(message.time)
         body, topic = message.body, message.key
         if jpeg := _jpeg(body):
@@ -81,7 +81,7 @@ class MessageEncoder:
 
 
 def origin_of(data: Mapping[str, Any]) -> tuple[Any, dict[str, str]]:
-    """Return the body of a recorded message, and its origin."""
+    """Return the body of a recorded message without its origin, and the origin; empty if it has none."""
     body = {key: value for key, value in data.items() if key != ORIGIN_KEY}
     said = data.get(ORIGIN_KEY)
     origin = dict(said) if isinstance(said, Mapping) else {}
@@ -89,7 +89,7 @@ def origin_of(data: Mapping[str, Any]) -> tuple[Any, dict[str, str]]:
 
 
 def json_bytes(data: Any) -> bytes:
-    """Return JSON data as bytes, including lone surrogates and NaN."""
+    """Encode JSON data as bytes; lone surrogates, which orjson rejects, are escaped."""
     try:
         return orjson.dumps(data)
     except TypeError:
@@ -99,7 +99,7 @@ def json_bytes(data: Any) -> bytes:
 def _envelope(message: Message, body: Any) -> dict[str, Any]:
     """Return the body with its origin.
 
-    A body that is not an object becomes the `value` of one, since Foxglove shows objects.
+    A body that is not an object, or that already has ORIGIN_KEY, is wrapped in `value`: Foxglove shows only objects.
     """
     plain = isinstance(body, Mapping) and ORIGIN_KEY not in body
     origin: dict[str, Any] = {
@@ -124,7 +124,7 @@ def _open(schema: Mapping[str, object]) -> dict[str, object]:
 
 
 def _jpeg(body: Any) -> bytes:
-    """Return the JPEG in a body, empty if it holds no JPEG as a base64 URL."""
+    """Return the JPEG in a body's `contentUrl`; empty if that is not a valid base64 data URL."""
     url = body.get("contentUrl") if isinstance(body, Mapping) else None
     if not isinstance(url, str) or not url.startswith(PICTURE):
         return b""

@@ -1,4 +1,4 @@
-"""Foxglove's own schemas of images and frames, as protobuf."""
+"""Foxglove's protobuf schemas for images, frames and shapes."""
 
 from functools import cache
 from typing import Any
@@ -10,7 +10,7 @@ NANO = 1_000_000_000
 
 @cache
 def foxglove_channel(topic: str, form: str) -> RecordedChannel:
-    """Return a channel with one of Foxglove's schemas, such as `CompressedImage`, and all that it depends on."""
+    """Return a channel with one of Foxglove's schemas, such as `CompressedImage`, and the schemas it depends on."""
     from google.protobuf.descriptor_pb2 import FileDescriptorSet
 
     found = FileDescriptorSet()
@@ -19,14 +19,14 @@ def foxglove_channel(topic: str, form: str) -> RecordedChannel:
 
 
 def form_class(form: str) -> Any:
-    """Return the class of one of Foxglove's schemas."""
+    """Return the protobuf class of one of Foxglove's schemas."""
     from importlib import import_module
 
     return getattr(import_module(f"foxglove_schemas_protobuf.{form}_pb2"), form)
 
 
 def compressed_image(jpeg: bytes, frame: str, at: int) -> bytes:
-    """Return a `foxglove.CompressedImage` of the camera's JPEG, in a frame of reference, at a time [ns]."""
+    """Return a serialized `foxglove.CompressedImage` of a JPEG, in a frame of reference, at a time [ns since 1970]."""
     image = form_class("CompressedImage")(frame_id=frame, data=jpeg, format="jpeg")
     stamp(image.timestamp, at)
     return bytes(image.SerializeToString())
@@ -38,7 +38,7 @@ def stamp(field: Any, at: int) -> None:
 
 
 def _collect(file: Any, found: Any, seen: set[str]) -> None:
-    """Add a file's dependencies, then the file."""
+    """Add a descriptor file to `found`, after its dependencies; skip the names in `seen`."""
     if file.name not in seen:
         seen.add(file.name)
         for other in file.dependencies:

@@ -1,4 +1,4 @@
-"""Reads a recording; an incomplete one is read up to its cut."""
+"""Reads a recording, up to where it is cut off or damaged."""
 
 import struct
 from collections.abc import Iterator
@@ -11,14 +11,14 @@ from lumen.features.mcap.files.recorded import Recorded, RecordedChannel, Record
 
 MAGIC = b"\x89MCAP0\r\n"
 END_BYTES = 8 + 9 + 20
-"""The size of a complete recording's last record and the magic after it."""
+"""The size of a complete recording's last record and the magic after it [bytes]."""
 FOOTER = 0x02
 MAX_RECORD_BYTES = 256_000_000
 """The largest valid record [bytes]; a larger size means damage."""
 
 
 def whole(path: Path) -> bool:
-    """Return whether a recording is complete, with its index. Raises RecordingError if it is not a recording."""
+    """Return whether a recording is complete. Raises RecordingError if it is unreadable, or not an MCAP file."""
     try:
         with path.open("rb") as file:
             if file.read(len(MAGIC)) != MAGIC:
@@ -32,9 +32,9 @@ def whole(path: Path) -> bool:
 
 
 def read_recording(path: Path) -> Iterator[Recorded]:
-    """Yield messages, attachments and metadata in their order, to the end or to the cut.
+    """Yield messages, attachments and metadata in file order, up to the end or the first damage.
 
-    Raises RecordingError if it is not a recording.
+    Raises RecordingError if the file is unreadable or not an MCAP file, MissingExtraError without `mcap`.
     """
     whole(path)
     demand("recording", "a recording", "mcap")
@@ -46,7 +46,7 @@ def read_recording(path: Path) -> Iterator[Recorded]:
 
 
 def _items(file: Any) -> Iterator[Recorded]:
-    """Yield the items; an incomplete or damaged chunk ends them, earlier ones are verified."""
+    """Yield the items of records and verified chunks; stop at the first incomplete or damaged one."""
     from mcap.records import Attachment, Channel, Chunk, Message, Metadata, Schema
     from mcap.stream_reader import StreamReader, breakup_chunk
 
@@ -80,7 +80,7 @@ def _items(file: Any) -> Iterator[Recorded]:
 
 
 def _damage() -> tuple[type[Exception], ...]:
-    """Return the exceptions of mcap and its decompressors for damaged bytes."""
+    """Return the exceptions that reading raises for damaged bytes, or at the end of the file."""
     from mcap.exceptions import McapError
     from zstandard import ZstdError
 

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 
 class RecordedChannel(NamedTuple):
-    """A channel: messages of one topic in one form."""
+    """A channel: the messages of one topic with one schema."""
 
     topic: str
     encoding: str
@@ -36,7 +36,7 @@ class RecordedFile(NamedTuple):
 
 
 class RecordedNotes(NamedTuple):
-    """Metadata of a recording, under a name."""
+    """Named metadata of a recording."""
 
     name: str
     words: tuple[tuple[str, str], ...]

@@ -1,4 +1,4 @@
-"""A recording that is being written: after a crash, all but the last half second can be read."""
+"""Writes a recording; after a crash, all but the last half second can be read."""
 
 import os
 import time
@@ -12,13 +12,13 @@ from lumen.features.mcap.files.recorded import Recorded, RecordedChannel, Record
 from lumen.upkeep.own_folders import NO_LINK
 
 CHUNK_BYTES = 64_000
-"""The size of a chunk, which can be read once it is complete [bytes]: with the library's 1 MB a kill left nothing."""
+"""The size of a chunk [bytes]. Only complete chunks can be read: with the library's 1 MB, a kill left nothing."""
 CHUNK_PERIOD = 0.5
-"""The time after which a chunk is completed in any case [s]."""
+"""The longest time until a chunk is completed [s]."""
 SYNC_PERIOD = 2.0
-"""The time between two requests to write the file to the disk [s]."""
+"""The time between two syncs of the file to the disk [s]."""
 MAX_CHANNELS = 60_000
-"""The most channels: MCAP counts them with 16 bits; messages of further ones are left out."""
+"""The maximum number of channels, which MCAP counts with 16 bits; messages of further channels are left out."""
 
 
 def demand_recording() -> None:
@@ -29,8 +29,7 @@ def demand_recording() -> None:
 class RecordingFile:
     """Writes a new recording, readable only by its owner; `messages` is the number of messages, `bytes` the size.
 
-    Raises RecordingError if `mcap` is missing, and OSError if the disk fails: then what was written before can be
-    repaired.
+    Raises MissingExtraError if a package is missing, and OSError if the disk fails: the file can then be repaired.
     """
 
     def __init__(self, path: Path) -> None:
@@ -52,7 +51,7 @@ class RecordingFile:
         return int(self._file.tell())
 
     def write(self, items: Iterable[Recorded]) -> None:
-        """Write these items in their order, without messages of channels beyond the first `MAX_CHANNELS`."""
+        """Write these items in order; leave out messages of channels beyond the first `MAX_CHANNELS`."""
         for item in items:
             match item:
                 case RecordedMessage(channel, came, sent, data):
@@ -68,7 +67,7 @@ class RecordingFile:
                     assert_never(item)
 
     def settle(self) -> None:
-        """Complete the present chunk, and write the file to the disk, if either is due."""
+        """Complete the current chunk and sync the file to the disk, each if it is due."""
         now = time.monotonic()
         if now - self._closed >= CHUNK_PERIOD:
             self._closed = now
@@ -94,7 +93,7 @@ class RecordingFile:
             return
 
     def _number(self, channel: RecordedChannel) -> int:
-        """Return the number of a channel, which is registered at its first use; 0 if there are too many."""
+        """Register a channel and return its number; return 0 if there are `MAX_CHANNELS` already."""
         if len(self._channels) >= MAX_CHANNELS:
             return 0
         form = channel.form, channel.language, channel.schema
@@ -106,12 +105,12 @@ class RecordingFile:
 
 
 def renamed(wanted: Path, path: Path) -> str:
-    """Return a notice if a recording could not get the wanted name; empty if it has it."""
+    """Return a notice if a recording's path differs from the wanted one, else the empty text."""
     return f"{wanted} already exists: this recording is saved as {path}" if path != wanted else ""
 
 
 def writable(path: Path) -> Path:
-    """Return a path for a new recording: this, or if it exists, the same with a number.
+    """Return the path for a new recording: `path`, or with a number in its name if that exists.
 
     Raises RecordingError if its folder is missing.
     """

@@ -11,7 +11,7 @@ from lumen.features.mcap.files.recorded import Recorded
 from lumen.features.mcap.files.recording_file import RecordingFile
 
 Changed = Callable[[Recorded], Recorded | None]
-"""Returns the item to write in place of one of a recording; None to leave it out."""
+"""Returns the item to write in place of a recorded one; None to leave it out."""
 
 
 def rewrite(
@@ -19,8 +19,8 @@ def rewrite(
 ) -> int:
     """Write all readable items of these recordings, then `more`, as one recording; return the number of messages.
 
-    The target, which may be one of the sources, is replaced only once all is written. Raises RecordingError if a source
-    is not a recording, or the disk fails.
+    The target, which can be one of the sources, is replaced only after everything is written. Raises RecordingError if
+    a source is not a recording, or the disk fails.
     """
     draft = target.with_name(f"{target.name}.{os.getpid()}.new")
     try:
@@ -47,13 +47,13 @@ def rewrite(
 def recover(path: Path) -> int | None:
     """Repair an incomplete recording in place; return the number of its messages, None if it is complete.
 
-    Raises RecordingError as `rewrite` does.
+    Raises RecordingError if it is not a recording, or the disk fails.
     """
     return None if whole(path) else rewrite([path], path)
 
 
 def reopened(path: Path, changed: Changed) -> RecordingFile:
-    """Rewrite a recording with changes, and keep it open for further items.
+    """Rewrite a recording with changes; return it, open for further items.
 
     Raises RecordingError if it is not a recording, OSError if the disk fails.
     """
