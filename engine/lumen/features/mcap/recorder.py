@@ -20,7 +20,7 @@ from lumen.upkeep.drops import DropLog
 from lumen.upkeep.threads import WatchedThread
 
 MAX_WAITING = 20_000
-"""The most messages that wait to be written; beyond it, publishers wait if it is patient, else the oldest are dropped."""
+"""The most unwritten messages; beyond it, publishers of a patient recorder wait, else the oldest are dropped."""
 WRITE_PERIOD = 0.1
 """The time between two writes [s]."""
 FORGETTING_SPACING = 2.0

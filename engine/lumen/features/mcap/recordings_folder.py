@@ -59,7 +59,7 @@ class RecordingsFolder:
         return note
 
     def begun(self) -> Iterator[BegunRecording]:
-        """Yield all begun recordings that exist; delete the notes of others that no process writes."""
+        """Yield all begun recordings that exist; delete notes whose recording is missing and not being written."""
         for folder in sorted(self.path.glob(f"*{_NOTE}")):
             note = Home(folder)
             said = note.read("path")

@@ -1,4 +1,4 @@
-"""Reachy Mini, reached through its daemon."""
+"""The robot Reachy Mini, controlled through its daemon."""
 
 from lumen.feature import Feature, RobotOption, RobotRow
 

@@ -1,4 +1,4 @@
-"""Calls Reachy Mini's daemon over HTTP: one call after the other on a separate thread, or on the caller's."""
+"""Calls Reachy Mini's daemon over HTTP: in a queue on a separate thread, or directly on the caller's."""
 
 import http.client
 import json
@@ -16,14 +16,14 @@ from lumen.upkeep.threads import WatchedThread
 
 PORT = 8000
 PATIENCE = 5.0
-"""The time that the daemon may take for an answer [s]."""
+"""The default time limit for the daemon's answer [s]."""
 UPLOAD_PATIENCE = 15.0
 
 _log = logging.getLogger(__name__)
 
 
 class DaemonAddress:
-    """The address of a daemon. Raises UsageError if `url` is not an address."""
+    """The address of a daemon. Raises UsageError if `url` is not an HTTP address, or has a path."""
 
     def __init__(self, url: str) -> None:
         try:
@@ -41,7 +41,7 @@ class DaemonAddress:
 
 
 class DaemonCall:
-    """A call of the daemon that may still be in progress."""
+    """A call to the daemon, possibly still in progress."""
 
     def __init__(self, work: Callable[[], Any]) -> None:
         self._work, self._over = work, Event()
@@ -53,7 +53,7 @@ class DaemonCall:
         return self._over.is_set()
 
     def run(self) -> None:
-        """Make the call, on the thread that may wait for it."""
+        """Make the call on this thread, and store its answer or error."""
         try:
             self._answer = self._work()
         except RobotError as error:
@@ -65,14 +65,14 @@ class DaemonCall:
             self._over.set()
 
     def result(self) -> Any:
-        """Return the answer of a call that is done. Raises RobotError if it failed."""
+        """Return the answer; None if the call is not done. Raises RobotError if it failed."""
         if self._error:
             raise self._error
         return self._answer
 
 
 class DaemonApi:
-    """The daemon at an address."""
+    """A client of the daemon at an address."""
 
     def __init__(self, address: DaemonAddress) -> None:
         self.address = address
@@ -80,7 +80,7 @@ class DaemonApi:
         self._thread = WatchedThread("lumen-reachy-calls", self._serve)
 
     def post(self, path: str, body: Any = None) -> DaemonCall:
-        """Queue a POST behind all earlier calls; return it."""
+        """Queue a POST behind all earlier calls; return the call."""
         return self.later(lambda: self.request("POST", path, body))
 
     def get(self, path: str) -> DaemonCall:
@@ -88,7 +88,7 @@ class DaemonApi:
         return self.later(lambda: self.request("GET", path))
 
     def later(self, work: Callable[[], Any]) -> DaemonCall:
-        """Queue any work that waits for the daemon; return it as a call."""
+        """Queue a function that waits for the daemon; return it as a call."""
         call = DaemonCall(work)
         if not self._thread.started:
             self._thread.start()
@@ -99,7 +99,7 @@ class DaemonApi:
         """Make a request on this thread; return the JSON data of the answer, None if the answer is empty.
 
         It waits at most `patience` [s]. Raises RobotLostError if the daemon does not answer, RobotFailedError if it
-        refuses or answers anything but JSON.
+        refuses the request or its answer is not JSON.
         """
         content = None if body is None else json.dumps(body).encode()
         return self._request(method, path, content, {"Content-Type": "application/json"} if content else {}, patience)
@@ -140,7 +140,7 @@ class DaemonApi:
 
 
 def _detail(text: bytes) -> str:
-    """Return why the daemon refused a call, as far as it gives a reason."""
+    """Return at most 100 characters of the daemon's reason for a refusal, or of its answer if it gives no reason."""
     try:
         data = json.loads(text)
     except ValueError:

@@ -1,4 +1,4 @@
-"""Limits of Reachy Mini's joints together: the body follows the head, and the head stays in reach of its rods."""
+"""Limits that connect Reachy Mini's joints: the body follows the head, and the head stays within reach of its rods."""
 
 from collections.abc import Mapping
 from math import radians
@@ -8,13 +8,13 @@ from lumen.features.reachy.rods import MOST_AGAINST_BODY, within_reach
 from lumen.language.robots import Body
 
 FREE = radians(55)
-"""The angle between head and body from which on the body follows [rad]: less than its limit of 65 degrees."""
+"""The angle between head and body beyond which the body follows [rad]: less than its limit of 65 degrees."""
 
 
 def possible(joints: Mapping[str, float], body: Body) -> dict[str, float]:
     """Return positions near `joints` that the robot can take [rad, m].
 
-    They are within limits, with the body below the head, and the head in reach of its rods.
+    They are within the joints' limits; the body follows the head, and the head is within reach of its rods.
     """
     found = {name: min(max(joints[name], body.joints[name].minimum), body.joints[name].maximum) for name in JOINTS}
     trunk, yaw = body.joints[BODY], found["head_yaw"]
@@ -26,7 +26,7 @@ def possible(joints: Mapping[str, float], body: Body) -> dict[str, float]:
 def limited(goal: Mapping[str, float], last: Mapping[str, float], body: Body, dt: float) -> dict[str, float]:
     """Return the positions [rad, m] that joints reach from `last` towards `goal` in `dt` [s] at their greatest speeds.
 
-    The head turns at most MOST_AGAINST_BODY from the slower body, because of its cables, and stays in reach of the
+    Because of its cables, the head turns at most MOST_AGAINST_BODY from the slower body. It stays within reach of the
     rods.
     """
     found = {}

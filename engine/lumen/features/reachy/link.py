@@ -1,4 +1,4 @@
-"""The WebSocket to Reachy Mini's daemon: targets go out, measured joints come in; it is opened again if it breaks."""
+"""The WebSocket to Reachy Mini's daemon: it sends targets, receives measured joints, and reconnects if it breaks."""
 
 import json
 import logging
@@ -19,12 +19,13 @@ if TYPE_CHECKING:
     from websockets.sync.client import ClientConnection
 
 SILENCE = 1.0
-"""The time for which the daemon may send no joints [s]: it sends 40 to 50 a second, and none after a restart."""
+"""The time without joints after which the robot is lost [s]: the daemon sends 40 to 50 a second, none after a restart.
+"""
 SECOND_LOOK = 0.25
-"""The time that Lumen waits for a message even if SILENCE is over [s], because this process may have been busy."""
+"""The least time that Lumen waits for a message [s], even after SILENCE, because this process may have been busy."""
 OPEN_PATIENCE = 5.0
 FIRST_RETRY_DELAY, MAX_RETRY_DELAY = 0.5, 5.0
-"""The first and the longest wait before an attempt to reconnect [s]; each is twice as long as the last."""
+"""The first and the longest wait before an attempt to reconnect [s]; the wait doubles each time."""
 
 _log = logging.getLogger(__name__)
 
@@ -35,13 +36,13 @@ class LinkChange(NamedTuple):
     name: str
     """`robot.lost` or `robot.back`."""
     seconds: float
-    """The time for which the robot was away by then [s]."""
+    """The time for which the robot was away [s]; 0 for `robot.lost`."""
     reason: str
     """Why the robot is lost; empty if it is back."""
 
 
 class Measured(NamedTuple):
-    """The joints as the daemon measured them last."""
+    """The daemon's last measurement of the joints."""
 
     joints: Mapping[str, float]
     """The positions of all joints [rad, m]; empty before the first measurement."""
@@ -84,7 +85,7 @@ class ReachyLink:
         self._sender.start()
 
     def send(self, target: Mapping[str, Any]) -> None:
-        """Send a target soon, in place of one that has not been sent yet."""
+        """Queue a target, in place of one that has not been sent yet."""
         with self._wanted:
             self._target = target
             self._wanted.notify()
@@ -95,7 +96,7 @@ class ReachyLink:
             self._target = None
 
     def changes(self) -> list[LinkChange]:
-        """Return the changes of the connection since the last call."""
+        """Return the changes of the connection since the last call, the oldest first."""
         return [self._changes.popleft() for _ in range(len(self._changes))]
 
     def close(self) -> None:
@@ -168,7 +169,10 @@ class ReachyLink:
         _log.warning("the robot is back, after %.0f s", away)
 
     def _receive(self, until: float) -> None:
-        """Process the next message. Raises RobotLostError if none came by `until`, or if the connection broke."""
+        """Process the next message.
+
+        Raises RobotLostError if none came by `until`, if it is unreadable, or if the connection broke.
+        """
         from websockets.exceptions import ConnectionClosed
 
         assert self._socket

@@ -1,4 +1,4 @@
-"""The target of Reachy Mini's joints at each moment, from commands, aims and lifelike movements."""
+"""Computes the next target of Reachy Mini's joints from commands, aims and lifelike movements."""
 
 from collections.abc import Collection, Mapping
 
@@ -13,8 +13,8 @@ SENT_TOLERANCE = 1e-5
 class Mover:
     """The goals of Reachy Mini's joints.
 
-    `goal` has the position that commands want of each joint, and `sent` the last target for the robot [rad, m]. Nothing
-    is sent unless the robot is `awake`.
+    `goal` has each joint's position by commands and aims, and `sent` the last target for the robot [rad, m]. Targets
+    are sent only while the robot is `awake`.
     """
 
     def __init__(self, body: Body) -> None:
@@ -25,12 +25,12 @@ class Mover:
         self._aims: dict[str, tuple[float, float]] = {}
 
     def stand(self, joints: Mapping[str, float]) -> None:
-        """Drop all aims, and continue from the pose to which something else moved the robot."""
+        """Drop all aims, and continue from these measured joints [rad, m]."""
         self.goal, self.sent = dict(joints), dict(joints)
         self._aims.clear()
 
     def aim(self, angles: Mapping[str, float], speed: float) -> None:
-        """Move these joints to `angles` [rad, m], no faster than `speed`, a share of their greatest speed."""
+        """Aim joints at `angles` [rad, m], at a fraction `speed` of their maximum speeds; ignore unknown joints."""
         self._aims |= {name: (angle, speed) for name, angle in angles.items() if name in self.goal}
 
     def drop_aims(self, joints: Collection[str]) -> None:
@@ -39,9 +39,9 @@ class Mover:
             self._aims.pop(name, None)
 
     def target(self, offsets: Mapping[str, float], dt: float) -> dict[str, float] | None:
-        """Return the next target, `dt` [s] after the last; None if the robot has it already.
+        """Return the next target, `dt` [s] after the last; None if it differs by less than SENT_TOLERANCE.
 
-        `offsets` [rad, m] are those of lifelike movements. No joint exceeds its limits or its greatest speed.
+        `offsets` [rad, m] are those of lifelike movements. No joint exceeds its limits or its maximum speed.
         """
         for name, (angle, speed) in list(self._aims.items()):
             most = speed * self.body.joints[name].speed * dt

@@ -17,21 +17,22 @@ from lumen.upkeep.threads import WatchedThread
 LOOK_PERIOD = 0.4
 """The period in which Lumen polls the daemon for its moves [s]."""
 STRAY_ANGLE, STRAY_PLACE = radians(14), 0.014
-"""A head farther than this from all targets that Lumen sent lately is moved by something else [rad], [m]."""
+"""Something else moves the head if it is farther than this from all targets of the last LATELY seconds [rad], [m]."""
 LATELY = 0.5
-"""The head may be at a target that was sent up to this long ago [s]."""
+"""The age up to which a target can explain the position of the head [s]."""
 STRAYS, STRAY_TIME = 6, 1.0
-"""The number of such measurements within that time [s] that shows that something else moves the head."""
+"""The number of stray measurements, and the time [s] within which they show that something else moves the head."""
 STILL_ANGLE, STILL_PLACE, STILL_TIME = radians(1.5), 0.002, 2.0
-"""The head has been left alone if it moved by less than this [rad], [m] for so long [s]."""
+"""Nothing else moves the head any more if it moved by less than this [rad], [m] for STILL_TIME [s]."""
 
 _log = logging.getLogger(__name__)
 
 
 class DaemonMoves:
-    """The moves that the daemon runs, and the sounds that it located; a thread polls them.
+    """The moves that the daemon runs, and the directions of speech that it measured; a thread polls them.
 
-    `ours` are the moves that Lumen began. `app` is the name of the app that has the robot; it is empty if none has.
+    `ours` are the ids of the moves that Lumen began. `app` is the name of the app that has locked the robot, else
+    empty.
     """
 
     def __init__(self, api: DaemonApi) -> None:
@@ -48,7 +49,7 @@ class DaemonMoves:
 
     @property
     def foreign(self) -> bool:
-        """Whether a move runs that Lumen did not begin."""
+        """Whether the daemon runs a move that Lumen did not begin."""
         return not self._running <= self.ours
 
     def sounds(self) -> list[float]:
@@ -76,7 +77,7 @@ class DaemonMoves:
                 continue
             self._running = frozenset(running)
             if isinstance(sound, dict) and sound.get("speech_detected"):
-                self._sounds.append(pi / 2 - float(sound.get("angle", pi / 2)))  # 0 is left, pi right
+                self._sounds.append(pi / 2 - float(sound.get("angle", pi / 2)))  # the daemon's 0 is left, pi is right
             self.app = str(lock.get("holder_name") or "") if isinstance(lock, dict) else ""
 
 
@@ -96,13 +97,13 @@ class Strays:
             self._sent.popleft()
 
     def forget(self) -> None:
-        """Forget all targets and measurements, because Lumen begins to send targets or has stopped."""
+        """Drop all targets and measurements, and set `taken` to False."""
         self._sent.clear()
         self._strange.clear()
         self._still, self.taken = None, False
 
     def measured(self, joints: Mapping[str, float], now: float) -> None:
-        """Process a measurement at `now` [s]; `taken` is then whether something else moves the head."""
+        """Process a measurement at `now` [s]; update `taken`, which is whether something else moves the head."""
         if self.taken:
             self._wait_for_stillness(joints, now)
         elif self._sent and all(_far(joints, sent, STRAY_ANGLE, STRAY_PLACE) for _, sent in self._sent):

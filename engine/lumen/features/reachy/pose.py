@@ -1,4 +1,4 @@
-"""Converts positions of Reachy Mini's joints to messages of its daemon, and back."""
+"""Converts Reachy Mini's joint positions to its daemon's messages, and back."""
 
 from collections.abc import Mapping, Sequence
 from math import asin, atan2, cos, hypot, sin
@@ -12,7 +12,7 @@ BODY, LEFT, RIGHT = "body_yaw", "left_antenna", "right_antenna"
 JOINTS = (*HEAD, BODY, LEFT, RIGHT)
 
 LYING_HEIGHT, LYING_PITCH = -0.035, 0.3
-"""The head of a robot that sleeps is lower than this [m], and tilted farther [rad]; it sinks further with time."""
+"""A sleeping robot's head is lower than this height [m], and pitched beyond this angle [rad]; it sinks with time."""
 
 
 def rotation(roll: float, pitch: float, yaw: float) -> Matrix3:
@@ -38,7 +38,7 @@ def target_message(joints: Mapping[str, float]) -> dict[str, Any]:
 
 
 def head_joints(pose: Sequence[Sequence[float]]) -> dict[str, float]:
-    """Return the joints of the head [rad, m] in a pose, a 4 x 4 matrix.
+    """Return the head's joints [rad, m] for its pose, a 4 x 4 matrix.
 
     Raises ValueError or TypeError for other data.
     """
@@ -48,7 +48,7 @@ def head_joints(pose: Sequence[Sequence[float]]) -> dict[str, float]:
 
 
 def motor_joints(message: Mapping[str, Any]) -> dict[str, float]:
-    """Return body and antennas [rad] of the daemon's `joint_positions`.
+    """Return the angles of body and antennas [rad] from the daemon's `joint_positions`.
 
     Raises ValueError, TypeError, KeyError or IndexError for other data.
     """
@@ -62,9 +62,9 @@ def lies(joints: Mapping[str, float]) -> bool:
 
 
 def distance(joints: Mapping[str, float], others: Mapping[str, float]) -> tuple[float, float]:
-    """Return how far two poses of head and body differ: in their angles at most [rad], and in the head's place [m].
+    """Return the largest angular difference between two poses of head and body [rad], and the heads' distance [m].
 
-    Antennas are left out: they swing.
+    Antennas are left out because they swing.
     """
     angles = max(abs(joints[name] - others[name]) for name in (*HEAD[3:], BODY))
     return angles, hypot(*(joints[name] - others[name] for name in HEAD[:3]))

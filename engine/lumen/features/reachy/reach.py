@@ -1,4 +1,4 @@
-"""The poses of a motion that the rods of Reachy Mini do not reach."""
+"""Finds the poses of a motion that Reachy Mini's rods do not reach."""
 
 from collections.abc import Mapping
 from math import degrees, radians
@@ -11,7 +11,7 @@ from lumen.language.robots import Body
 from lumen.motion.trajectories import Trajectory
 
 SHORT_ANGLE, SHORT_LENGTH = radians(1.0), 0.001
-"""The least distance of a joint from its goal that is reported [rad], [m]."""
+"""A joint's distance from its goal above which it is reported [rad], [m]."""
 SAMPLE_PERIOD = 0.05
 """The period in which a motion is sampled [s]."""
 
@@ -29,7 +29,7 @@ class Shortage(NamedTuple):
 
     @property
     def share(self) -> float:
-        """The shortage as a multiple of the least that is reported."""
+        """The shortage as a multiple of SHORT_LENGTH or SHORT_ANGLE."""
         return abs(self.goal - self.reached) / (SHORT_LENGTH if self.joint in HEAD[:3] else SHORT_ANGLE)
 
     def __str__(self) -> str:
@@ -40,7 +40,7 @@ class Shortage(NamedTuple):
 
 
 def shortest(goal: Mapping[str, float], near: Mapping[str, float], time: float = 0.0) -> Shortage | None:
-    """Return the joint of the head that `near` leaves farthest from its goal; None if each is near enough."""
+    """Return the head's joint that is farthest from its goal in `near`; None if every joint is near enough."""
     worst = max((Shortage(name, goal[name], near[name], time) for name in HEAD), key=lambda short: short.share)
     return worst if worst.share > 1.0 else None
 
@@ -48,7 +48,7 @@ def shortest(goal: Mapping[str, float], near: Mapping[str, float], time: float =
 def worst_of(motion: MotionDefinition, body: Body) -> Shortage | None:
     """Return the joint that falls farthest short in a motion, and when; None if the robot reaches every pose.
 
-    Joints that it does not move are as in the posture Stand.
+    Joints that the motion does not move are in the posture Stand.
     """
     course, stand = Trajectory(motion), {name: body.postures["Stand"][name] for name in JOINTS}
     found = []
@@ -62,6 +62,6 @@ def worst_of(motion: MotionDefinition, body: Body) -> Shortage | None:
 
 
 def shortfall(motion: MotionDefinition, body: Body) -> str:
-    """Return a description of the pose that falls short the most; empty if the robot reaches all of the motion."""
+    """Return a description of the pose that falls farthest short; empty if the robot reaches the whole motion."""
     worst = worst_of(motion, body)
     return f"`{motion.name}` falls short at {worst.time:.1f} s: {worst}" if worst else ""

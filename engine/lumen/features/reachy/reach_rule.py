@@ -1,4 +1,4 @@
-"""Motions of a Reachy Mini: poses that its rods do not reach together, though each joint alone reaches its own."""
+"""Reports poses of motions that a Reachy Mini's rods can't reach, although each joint alone is within its limits."""
 
 from functools import partial
 
@@ -13,7 +13,7 @@ BEYOND_RODS = Code("beyond-rods", "motions", WARNING, "the rods under a Reachy M
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report poses of motions that the rods do not reach."""
+    """Report the worst pose of each motion that the rods do not reach; do nothing for other robots."""
     body = draft.body
     if body is None or not stands_on_rods(body):
         return
@@ -27,7 +27,7 @@ def check(draft: ProjectDraft) -> None:
 
 
 def _place(motion: MotionDefinition, short: Shortage) -> NodePath:
-    """Return the path of the key nearest in time to the shortage: one of its joint if there is any, else any key."""
+    """Return the path of the key nearest in time to the shortage, preferably among the keys of its joint."""
     keys = [key for track in motion.tracks.values() for key in track if key.where]
     own = [key for key in motion.tracks.get(short.joint, ()) if key.where]
     nearest = min(own or keys, key=lambda key: abs(key.time - short.time))

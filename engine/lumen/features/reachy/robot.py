@@ -27,9 +27,9 @@ from lumen.robot.life_layer import LifeLayer
 from lumen.robot.skill_runner import SkillRunner
 
 LONGEST_TICK = 0.1
-"""The longest time between two ticks that counts for speeds [s], so that no joint jumps after a pause."""
+"""The longest time between two ticks that counts for speeds [s]: it keeps joints from jumping after a pause."""
 WAKE_AGAIN = "reachy wakes again"
-"""The id of the command that wakes the robot after its daemon was lost; its answer is `robot.back`."""
+"""The id of the command that wakes the robot after a reconnection; `robot.back` replaces its answer."""
 
 _log = logging.getLogger(__name__)
 
@@ -37,11 +37,11 @@ _log = logging.getLogger(__name__)
 class ReachyRobot(ExecutingRobot):
     """The Reachy Mini whose daemon is at `url`, in real time: `clock` returns the time of its answers and events [s].
 
-    `voice` is the row of `voices` that it speaks with, or `none`; sound files are in `root`. If the connection breaks,
-    all commands fail and `robot.lost` is raised; once it is restored, the robot is woken if it was awake, and
-    `robot.back` is raised. While another program moves the robot, nothing is sent and commands that move it are
-    refused; `robot.busy` is raised when that begins, `robot.free` when it has ended. Raises RobotError if there is no
-    robot, UsageError if `url` is not an address or there is no such voice.
+    `voice` is its row in `voices`, or `none`; sound files are in `root`. If the connection breaks, all commands fail
+    and `robot.lost` is raised. After a reconnection, the robot is woken if it was awake, and `robot.back` is raised.
+    While something else moves the robot, no targets are sent and commands that move it, except `wake`, are refused.
+    This raises `robot.busy` at its beginning and `robot.free` at its end. The constructor raises RobotError if there
+    is no robot, UsageError if `url` is not an address or there is no such voice.
     """
 
     def __init__(
@@ -114,7 +114,7 @@ class ReachyRobot(ExecutingRobot):
         return Joints(self._clock() - age, names, angles, stiffness, life=self._life.offsets)
 
     def close(self) -> None:
-        """End all connections; the robot holds its last target."""
+        """Close all connections; the robot holds its last target."""
         self._runner.close()
         self._moves.close()
         self._link.close()
@@ -124,7 +124,7 @@ class ReachyRobot(ExecutingRobot):
         take_over(self._api, self.body)
 
     def _find_awake(self) -> None:
-        """Record whether the robot was woken before: then its motors are on, and its head does not lie."""
+        """Record whether the robot is awake, with motors on and the head raised; continue from its present pose."""
         joints = self._link.measured.joints
         mode = self._api.request("GET", "/api/motors/status").get("mode")
         self._mover.awake = mode == "enabled" and not lies(joints)
@@ -150,7 +150,7 @@ class ReachyRobot(ExecutingRobot):
         return not self._executor.owner(self._part.get(joint, ""))
 
     def _notice_link(self, now: float) -> None:
-        """Fail all commands when the robot is lost, and wake the robot once it is back."""
+        """Fail all commands when the robot is lost; when it is back, wake it if it was awake."""
         for name, seconds, reason in self._link.changes():
             self._strays.forget()
             if name == "robot.lost":
@@ -168,7 +168,7 @@ class ReachyRobot(ExecutingRobot):
                 self._events.append(Event(name, {"seconds": round(seconds, 3)}, now))
 
     def _woke_again(self, event: Event, now: float) -> bool:
-        """Return whether an event answers the command that wakes the robot again; if so, raise `robot.back`."""
+        """Return whether an event answers WAKE_AGAIN; if so, raise `robot.back` unless the robot is lost again."""
         if not event.name.endswith(f".command.{WAKE_AGAIN}"):
             return False
         if event.name.startswith("error"):
@@ -179,7 +179,7 @@ class ReachyRobot(ExecutingRobot):
         return True
 
     def _notice_others(self, now: float) -> None:
-        """Stop while something else moves the robot; then continue from that pose."""
+        """Fail all commands when something else moves the robot; follow its pose, to continue from there."""
         joints, at = self._link.measured
         if joints and at != self._seen and self._mover.awake:
             self._seen = at

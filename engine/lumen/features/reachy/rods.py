@@ -1,8 +1,8 @@
 """The poses of Reachy Mini's head that its six rods reach: the inverse kinematics of a Stewart platform.
 
-Each rod leads from the tip of a motor's arm to the platform beneath the head. The lengths and places are those of the
-`kinematics_data.json` and of the motors' limits in `reachy-mini` 1.13.0 (Pollen Robotics, Apache-2.0), written down as
-numbers; its own solver gives the same angles (`tests/features/reachy/test_rods.py`).
+Each rod connects the tip of a motor's arm with the platform beneath the head. The dimensions in `kinematics_data.json`
+and the motors' limits are copied from `reachy-mini` 1.13.0 (Pollen Robotics, Apache-2.0). Its own solver returns the
+same angles (`tests/features/reachy/test_rods.py`).
 """
 
 from collections.abc import Mapping
@@ -15,28 +15,28 @@ from lumen.language.robots import Body
 ARM, ROD = 0.04, 0.085
 """The lengths of a motor's arm and of a rod [m]."""
 HEIGHT = 0.177
-"""The height of the platform above the table if the position of the head is 0 [m]."""
+"""The height of the platform above the table if the head's position is 0 [m]."""
 MOST_AGAINST_BODY = radians(65)
 """The greatest angle between head and body [rad]."""
 STEPS = 12
-"""The number of times that the way to a pose beyond reach is halved: to within a four-thousandth of it."""
+"""The number of bisections on the line to a pose beyond reach: exact to a four-thousandth of its length."""
 
 
 class Motor(NamedTuple):
     """A motor beneath the head, in the body's frame."""
 
     place: tuple[float, float, float]
-    """The place of the motor [m]."""
+    """The position of the motor [m]."""
     along: tuple[float, float]
-    """The level direction of its arm at angle 0."""
+    """The horizontal direction of its arm at angle 0, a unit vector."""
     up: float
     """1 if the arm points up at a quarter turn, -1 if it points down."""
     joint: tuple[float, float]
-    """Where its rod holds the platform [m], in the platform's frame."""
+    """The position of its rod's joint with the platform [m], in the platform's frame."""
     elbow: float
-    """The choice of one of the two possible angles: 1 or -1."""
+    """The choice between the two possible angles: 1 or -1."""
     limits: tuple[float, float]
-    """The least and the greatest angle [rad]."""
+    """The minimum and the maximum angle [rad]."""
 
 
 C, S = cos(pi / 6), sin(pi / 6)
@@ -53,7 +53,7 @@ MOTORS = (
 def motor_angles(head: Mapping[str, float], body: float) -> tuple[float | None, ...]:
     """Return the angle of each motor [rad] for a pose of the head, with the body at `body` [rad].
 
-    It is None for a motor whose rod can't span the distance. The limits of the motors are ignored.
+    The angle is None for a motor whose rod can't span the distance. The motors' limits are ignored.
     """
     x, y, z, roll, pitch, yaw = (head[name] for name in HEAD)
     turned = rotation(roll, pitch, yaw - body)
@@ -83,9 +83,9 @@ def reaches(head: Mapping[str, float], body: float) -> bool:
 
 
 def within_reach(joints: Mapping[str, float]) -> dict[str, float]:
-    """Return the joints with the head as far from its zero pose towards its pose as the rods reach.
+    """Return the joints, with the head's pose scaled towards zero until the rods reach it.
 
-    Its yaw is kept. The joints are the same if they are within reach.
+    The yaw is kept. Joints within reach are returned unchanged.
     """
     if reaches(joints, joints[BODY]):
         return dict(joints)
@@ -101,5 +101,5 @@ def within_reach(joints: Mapping[str, float]) -> dict[str, float]:
 
 
 def stands_on_rods(body: Body) -> bool:
-    """Return whether a body is a Reachy Mini: it has the joints of one."""
+    """Return whether a body is a Reachy Mini, by the joints of its head and body."""
     return {*HEAD, BODY} <= body.joints.keys()

@@ -1,4 +1,4 @@
-"""Sets up a Reachy Mini."""
+"""Sets up a Reachy Mini for a run."""
 
 from pathlib import Path
 
@@ -12,7 +12,7 @@ ADDRESS = "http://reachy-mini.local:8000"
 
 
 class TypedVisitors:
-    """A `Hall` in which visitors are real: a person who types is heard, and seen only if a visual module sees them."""
+    """A `Hall` of real visitors: a person who types is heard, but seen only by a visual module."""
 
     def place(self, visitor: Visitor | None) -> None:
         """Do nothing: real visitors place themselves."""
@@ -23,7 +23,7 @@ class TypedVisitors:
 
 
 def set_up(request: RobotRequest) -> Setup:
-    """Return the robot whose daemon is at the address in the option `url`.
+    """Return the setup of the robot whose daemon is at the address in the option `url`, or at ADDRESS without one.
 
     Raises UsageError for a story or a speed other than 1, and RobotError if there is no such robot.
     """

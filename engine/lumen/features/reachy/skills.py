@@ -1,4 +1,4 @@
-"""The commands of Reachy Mini: how each begins, and how it ends early."""
+"""Performs the commands of Reachy Mini as activities."""
 
 from collections.abc import Callable, Mapping
 from contextlib import suppress
@@ -25,23 +25,23 @@ from lumen.robot.cues import CueNotifier, EventSink
 from lumen.robot.joint_ways import APPROACH_TIME, LOOK_SPEED, begun_from, home_angles, way_duration
 
 TOLERANCE, PLACE_TOLERANCE = radians(6), 0.006
-"""A head that is nearer than this to its goal has arrived [rad], [m]; it sags by up to 4 degrees."""
+"""The largest distance from its goal at which the head has arrived [rad], [m]; it sags by up to 4 degrees."""
 LYING_TOLERANCE, LYING_PLACE_TOLERANCE = radians(2.5), 0.003
-"""The tolerances of a head that lies down [rad], [m]: the robot lets go of it there."""
+"""The largest distance from the posture ASLEEP at which the head lies [rad], [m]."""
 GRACE = 1.5
-"""The time that the head may take beyond its planned duration [s]."""
+"""The time that the head can take beyond its planned duration [s]."""
 LEAST_WAY = 0.4
-"""The shortest time that a change of posture takes [s]."""
+"""The minimum duration of a change of posture [s]."""
 LOOK_PERIOD = 0.1
-"""The period in which the daemon is asked whether a move has ended [s]."""
+"""The period in which the daemon is polled for the end of a move [s]."""
 ASLEEP = "Asleep"
 """The posture in which the robot rests."""
 FOREIGN_PATIENCE = 8.0
-"""The longest time that waking waits for the end of another program's move [s]."""
+"""The longest time for which `wake` waits for the end of another program's move [s]."""
 
 
 class ReachySkills:
-    """Begins activities. `measured` returns the joints as they were measured last, `notice` receives events."""
+    """Begins activities. `measured` returns the last measurement of the joints; `notice` receives events."""
 
     def __init__(
         self,
@@ -57,7 +57,7 @@ class ReachySkills:
         self._body = mover.body
 
     def begin(self, command: NativeCommand) -> StepActivity:
-        """Return the command under way. Raises RobotError if the robot can't perform it."""
+        """Return the activity of a command. Raises RobotError if the robot can't perform it, or is not awake."""
         match command:
             case Rest():
                 self._mover.awake = False  # even if the rest fails, nothing is sent any more
@@ -99,7 +99,7 @@ class ReachySkills:
         yield from self._go(target, 1.0, way / LOOK_SPEED, "where it should look")
 
     def _go(self, target: Mapping[str, float], speed: float, least: float, where: str) -> Steps:
-        """Move the joints smoothly to `target` [rad, m].
+        """Move the joints smoothly to `target` [rad, m], in at least `least` [s] at full speed.
 
         Raises RobotFailedError if the rods, or an obstacle, keep the head from it.
         """
@@ -124,7 +124,7 @@ class ReachySkills:
         return angles <= TOLERANCE and places <= PLACE_TOLERANCE
 
     def _check(self, where: str) -> None:
-        """Raise RobotFailedError if the goal is beyond reach, or if the head is not there."""
+        """Raise RobotFailedError if the head has not arrived, or if the goal, which is then corrected, is beyond reach."""
         near = possible(self._mover.goal, self._body)
         if short := shortest(self._mover.goal, near):
             self._mover.goal.update(near)
@@ -161,7 +161,7 @@ class ReachySkills:
             now = yield None
 
     def _wake(self) -> Steps:
-        """Have the daemon wake the robot; send no targets before that is over.
+        """Have the daemon wake the robot, then move to the posture Stand; send no targets during the daemon's move.
 
         Raises RobotRefusedError if another program's move has not ended after FOREIGN_PATIENCE.
         """
@@ -184,7 +184,7 @@ class ReachySkills:
         yield from self._go(self._body.postures["Stand"], 1.0, LEAST_WAY, "the posture Stand")
 
     def _rest(self) -> Steps:
-        """Have the daemon lay the robot to sleep; the command has ended once the robot lies."""
+        """Have the daemon put the robot to sleep; end when the head lies, or the move ends."""
         yield from self._daemon_move("goto_sleep", self._lies, stops_others=True)
 
     def _lies(self) -> bool:
@@ -197,10 +197,10 @@ class ReachySkills:
     def _daemon_move(
         self, name: str, enough: Callable[[], bool] = lambda: False, *, stops_others: bool = False
     ) -> Steps:
-        """Have the daemon play a move until its end, or until `enough` is true.
+        """Have the daemon play a move; wait until it ends, or `enough` returns True.
 
-        The move is stopped if its command is cancelled. Moves that Lumen began earlier are stopped first, and with
-        `stops_others` those of other programs, too.
+        A cancellation stops the move. Moves that Lumen began earlier are stopped first; with `stops_others`, those of
+        other programs are stopped, too.
         """
         given_up = Event()
 
@@ -209,7 +209,7 @@ class ReachySkills:
                 self._api.request("POST", "/api/move/stop", {"uuid": move})
 
         def begin() -> str:
-            for other in self._moves.now():  # the daemon would play both at once
+            for other in self._moves.now():  # the daemon would play both simultaneously
                 if other in self._moves.ours or stops_others:
                     stop(other)
             move = str(self._api.request("POST", f"/api/move/play/{name}")["uuid"])

@@ -29,15 +29,15 @@ class LoadedSound(NamedTuple):
     duration: float
     """Its duration [s]."""
     file: str = ""
-    """Its file on the robot; empty for a silent sound."""
+    """The name of its file on the robot; empty for a silent sound."""
 
 
 class RobotSounds:
-    """Makes sounds and uploads them; each only once. Its methods wait for the daemon.
+    """Makes sounds, and uploads each only once. Its methods wait for the daemon.
 
-    `voice` is a row of `voices` of a feature, or `none`; `language` is spoken if a text names none. Sound files are in
-    the folder `root`. `volume`, from 0 to 1, makes sounds quieter before they are uploaded: the robot's own volume
-    stays as it is. Raises UsageError if there is no such voice.
+    `voice` is a feature's row in `voices`, or `none`; `language` is the default of the texts. Sound files are in the
+    folder `root`. `volume`, from 0 to 1, makes sounds quieter before they are uploaded: the robot's own volume does
+    not change. Raises UsageError if there is no such voice.
     """
 
     def __init__(self, api: DaemonApi, voice: str, language: str, root: Path) -> None:
@@ -52,14 +52,14 @@ class RobotSounds:
         self._warnings = OnceLog(_log)
 
     def renew(self) -> None:
-        """Forget what the daemon has and can do, because another one may answer now."""
+        """Forget the uploaded files and whether the daemon plays sounds, because it may have been restarted."""
         self._has_media = None
         self._uploaded.clear()
 
     def speech(self, text: str, language: str) -> LoadedSound:
-        """Return a text as a sound; silent if it can't be synthesized, which is logged once.
+        """Return a text as a sound; silent if it is empty, or if the voice or the daemon plays nothing.
 
-        Raises RobotError if the daemon does not accept it.
+        A text that can't be synthesized is silent, too, which is logged once. Raises RobotError if the daemon fails.
         """
         silent = LoadedSound(speech_duration(text))
         if self._voice is None or not text.strip() or not self._media():
@@ -79,7 +79,7 @@ class RobotSounds:
             return silent
 
     def sound(self, file: str, length: float) -> LoadedSound:
-        """Return a sound file of the project; silent if the robot plays none.
+        """Return a sound file of the project; silence of `length` [s] if the daemon plays no sounds.
 
         Raises RobotError if the file can't be read, or the daemon does not accept it.
         """
@@ -92,7 +92,7 @@ class RobotSounds:
             raise RobotFailedError(f"the sound {file} can't be read: {error}") from error
 
     def _media(self) -> bool:
-        """Return whether the daemon plays sounds: without its media server it answers `ok` and plays nothing."""
+        """Return whether the daemon has a media server: without it, the daemon answers `ok` and plays nothing."""
         if self._has_media is None:
             status = self._api.request("GET", "/api/media/status")
             self._has_media = isinstance(status, dict) and bool(status.get("available"))
@@ -109,7 +109,10 @@ class RobotSounds:
 
 
 def quieter(content: bytes, volume: float) -> bytes:
-    """Return a WAV file of 16 bits with each sample times `volume`. Raises wave.Error or EOFError for other data."""
+    """Return a 16-bit WAV file with each sample times `volume`; 1 returns `content` unchecked.
+
+    Raises wave.Error or EOFError for other data.
+    """
     if volume == 1.0:
         return content
     with wave.open(io.BytesIO(content)) as read:

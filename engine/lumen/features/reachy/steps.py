@@ -11,9 +11,9 @@ Steps = Generator[DaemonCall | None, Any, None]
 
 
 class StepActivity:
-    """An activity of the executor made of steps; if it is cancelled, it ends at once, and `stop` is called.
+    """An executor's activity made of steps; a cancellation ends it immediately and calls `stop`.
 
-    `missed` describes a goal that was not reached although the activity ended; empty without one.
+    `missed` describes a goal that is not reached although the activity succeeds; else it is empty.
     """
 
     def __init__(self, steps: Steps, stop: Callable[[], None] = lambda: None) -> None:
@@ -40,7 +40,7 @@ class StepActivity:
             self._stop()
 
     def _next(self) -> DaemonCall | None:
-        """Begin the steps, or return the call in progress; None if the steps wait for the next tick."""
+        """Return the call in progress, at first that of the first step; None if the steps wait for the next tick."""
         if self._begun:
             return self._call
         self._begun = True

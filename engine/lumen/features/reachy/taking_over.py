@@ -1,4 +1,4 @@
-"""The first exchange with Reachy Mini's daemon after a connection."""
+"""The first requests to Reachy Mini's daemon, before each connection."""
 
 import logging
 import re
@@ -11,9 +11,9 @@ from lumen.features.reachy.rods import stands_on_rods
 from lumen.language.robots import Body
 
 TESTED = (1, 13)
-"""The version of the daemon that Lumen was tested with."""
+"""The major and minor version of the daemon that Lumen was tested with."""
 START_PATIENCE, LOOK_PERIOD = 20.0, 0.2
-"""The time that the daemon may take to start the robot, and the period in which Lumen checks that [s]."""
+"""The time limit for the robot's start, and the period in which Lumen checks it [s]."""
 
 _log = logging.getLogger(__name__)
 
@@ -21,7 +21,8 @@ _log = logging.getLogger(__name__)
 def take_over(api: DaemonApi, body: Body) -> None:
     """Check that `body` is a Reachy Mini, and start the robot if the daemon has not.
 
-    Raises RobotError if it is not, if the daemon does not answer, or if it can't start the robot.
+    An untested version is logged. Raises RobotError if `body` is another robot, or if the daemon does not answer or
+    can't start the robot.
     """
     if not stands_on_rods(body):
         raise RobotModelError(f"{body.name} is no Reachy Mini: write `model: reachy_mini` under `robot` of lumen.yaml")

@@ -113,7 +113,7 @@ def _envelope(message: Message, body: Any) -> dict[str, Any]:
 
 
 def _open(schema: Mapping[str, object]) -> dict[str, object]:
-    """Return the schema of a body, extended by the origin."""
+    """Return a recorded body's schema: the message's schema and the origin's; wrap a body that is not an object."""
     properties = schema.get("properties")
     own = dict(properties) if isinstance(properties, Mapping) else {}
     found = {"type": "object", **schema, "properties": {**own, ORIGIN_KEY: _ORIGIN_SCHEMA}}
