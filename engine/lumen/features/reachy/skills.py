@@ -124,7 +124,7 @@ class ReachySkills:
         return angles <= TOLERANCE and places <= PLACE_TOLERANCE
 
     def _check(self, where: str) -> None:
-        """Raise RobotFailedError if the head has not arrived, or if the goal, which is then corrected, is beyond reach."""
+        """Raise RobotFailedError if the head has not arrived, or if the goal is beyond reach; correct such a goal."""
         near = possible(self._mover.goal, self._body)
         if short := shortest(self._mover.goal, near):
             self._mover.goal.update(near)

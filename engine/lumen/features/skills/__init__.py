@@ -1,4 +1,4 @@
-"""Skills: verbs of a project's own, each a manifest `skills/NAME.yaml` and a program that performs it."""
+"""Skills: a project's own verbs, each with a manifest `skills/NAME.yaml` and a program that performs it."""
 
 from lumen.feature import Feature, PartRow, Phase
 

@@ -1,4 +1,4 @@
-"""A manifest of a skill, `skills/NAME.yaml`, from its checked data to the row of its verb."""
+"""Converts a skill's manifest, `skills/NAME.yaml`, to the row of its verb."""
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
@@ -25,11 +25,11 @@ SKILL_FILE = Code("skill-file", "skills", ERROR, "the Python file of a skill is 
 
 PERFORMER = "lumen.features.skills.performer"
 DEFAULT_MEMORY = 512
-"""The memory that a skill's program may use if its manifest has no `memory` [MB]."""
+"""The memory limit of a skill's program if its manifest has no `memory` [MB]."""
 
 _NAME = re.compile(r"[a-z][a-z0-9_]*")
 _WORD = re.compile(r"(?<![\w.'\"])(?!(?:and|or|not|in|if|else|true|false|null)\b)[A-Za-z_]\w*(?!\w*\s*\()")
-"""A name in an expression that is neither a function nor a word of the language."""
+"""Matches a name in an expression that is neither a function nor a keyword."""
 _UNUSABLE = {"$ref": "write the definition in its place", "$defs": "write each definition where it is used"}
 
 ProgramKind = Literal["python", "command", "module"]
@@ -45,18 +45,18 @@ class Skill:
     warm: bool = False
     """Whether the program starts with the exhibition."""
     memory: float = DEFAULT_MEMORY
-    """The memory that the program may use [MB]."""
+    """The memory limit of the program [MB]."""
 
     @property
     def module(self) -> str:
-        """The name of the module that performs it; empty if another program does."""
+        """The name of the module that performs the skill; empty if a local program performs it."""
         return self.target[0] if self.kind == "module" else ""
 
 
 def build_skill(data: Any, report: DocumentReport, *, name: str, languages: Sequence[str] = ()) -> VerbRow | None:
-    """Return the row of the verb that the data of `skills/NAME.yaml` describe; None if they have errors.
+    """Return the verb's row for the data of `skills/NAME.yaml`; None if the data have errors.
 
-    Its description is that of the first of the project's `languages` in which there is one.
+    Its description is in the first of the project's `languages` that the manifest has, else in the manifest's first.
     """
     if not isinstance(data, Mapping):
         return None
@@ -111,7 +111,7 @@ def _performed(said: Any, data: Mapping[str, Any], report: DocumentReport) -> Sk
 
 
 def _schema(data: Mapping[str, Any], key: str, languages: Sequence[str], report: DocumentReport) -> Mapping[str, Any]:
-    """Return the JSON Schema under `in` or `out`; empty, with a report, if it can't be that of a verb."""
+    """Return the JSON Schema under `in` or `out`; empty if there is none, or, with a report, if it is invalid."""
     if not isinstance(schema := data.get(key), Mapping):
         return {}
     plain: dict[str, Any] = _with_texts(schema, languages)
@@ -130,7 +130,7 @@ def _schema(data: Mapping[str, Any], key: str, languages: Sequence[str], report:
         if name not in properties:
             hint = did_you_mean(name, properties, "`properties` has") if properties else "list it under `properties`"
             report(SKILL_SCHEMA, (key, "required", i), f"`{name}` is required, and not described", hint)
-    if properties:  # a value of an enumeration of texts can be written short, as every text can
+    if properties:  # an `enum` of texts allows the short form, as `type: string` does
         plain["properties"] = properties = {name: _typed(inner) for name, inner in properties.items()}
     defaults = {name: inner["default"] for name, inner in properties.items() if _has_default(inner)}
     clear = all(_is_clear(properties[name]) for name in defaults) and "additionalProperties" not in plain
@@ -151,7 +151,7 @@ def _has_default(schema: Any) -> bool:
 
 
 def _is_clear(schema: Mapping[str, Any]) -> bool:
-    """Return whether a default certainly fits its schema: a complete check takes longer than the rest of a manifest."""
+    """Return whether a default certainly fits its schema, without the complete check, which is slow."""
     default, kind, values = schema["default"], schema.get("type"), schema.get("enum")
     known = schema.keys() <= {"type", "enum", "default", "description", "format"}
     typed = isinstance(kind, str) and type(default) in _TYPES.get(kind, ())
@@ -178,7 +178,7 @@ def _check_default(schema: Mapping[str, Any], where: NodePath, report: DocumentR
 
 
 def _unusable(schema: Any, path: NodePath = ()) -> Iterator[NodePath]:
-    """Yield the paths of keywords that can't be used in a schema within another one."""
+    """Yield the paths of keywords that can't be used in a schema inside another schema."""
     if isinstance(schema, Mapping):
         for key, inner in schema.items():
             if key in _UNUSABLE and path[-1:] != ("properties",):
@@ -191,7 +191,7 @@ def _unusable(schema: Any, path: NodePath = ()) -> Iterator[NodePath]:
 
 
 def _check_takes(row: VerbRow, report: DocumentReport) -> None:
-    """Report `takes` if it is not a duration, or if its expressions use anything but arguments."""
+    """Report `takes` if it is not a duration, or uses anything but arguments that always have a value."""
     properties = row.arguments.get("properties", {})
     sources = [part.source for part in split_template(row.takes) if not isinstance(part, str)]
     if fault := takes_fault(row):
@@ -231,7 +231,7 @@ def _with_texts(schema: Any, languages: Sequence[str]) -> Any:
 
 
 def _text(said: Any, languages: Sequence[str]) -> str:
-    """Return the text in the first of these languages that the manifest has, else in its own first language."""
+    """Return a plain text, or the text in the first of these languages that `said` has, else in its first language."""
     if not isinstance(said, Mapping):
         return str(said)
     return str(next((said[language] for language in languages if language in said), next(iter(said.values()))))

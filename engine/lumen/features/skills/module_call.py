@@ -1,4 +1,4 @@
-"""A call of a skill that a module performs: a program on the bus, possibly on another machine."""
+"""A skill's call that a module performs: a program on the bus, possibly on another machine."""
 
 import threading
 import time
@@ -15,12 +15,12 @@ from lumen.language.routing_keys import SKILL_ANSWER, SKILL_CALL, key_of_robot
 from lumen.ports import Bus, Message
 
 ACCEPTING = 5.0
-"""The time that a module has for its first answer to a call [s]."""
+"""The time limit for a module's first answer to a call [s]."""
 MAX_UNREAD_ANSWERS = 1_000
 
 
 class ModuleAnswers:
-    """Receives modules' answers to the calls of one robot, from the first call of a module on."""
+    """Receives modules' answers to one robot's calls; it subscribes when the first call is added."""
 
     def __init__(self, project: Project, bus: Bus) -> None:
         self._key, self._bus = key_of_robot(SKILL_ANSWER, project.robot), bus
@@ -51,7 +51,7 @@ class ModuleAnswers:
 
 
 class ModuleCall:
-    """One call, sent to a module of the project's robot; its messages are those of a `SkillProcess`."""
+    """A call, sent to a module of the project's robot; it has the interface of a `SkillProcess`."""
 
     def __init__(self, project: Project, bus: Bus, module: str, answers: ModuleAnswers) -> None:
         self.id, self.ended = uuid.uuid4().hex[:12], ""
@@ -70,7 +70,7 @@ class ModuleCall:
 
     @property
     def fault(self) -> str:
-        """The reason to give the call up; empty if there is no reason."""
+        """The reason to give up the call, if the module does not answer within ACCEPTING; else empty."""
         silent = not self._heard and time.monotonic() - self._begun > ACCEPTING
         return f"it did not answer within {ACCEPTING:g} s: is it running, on this bus?" if silent else ""
 
@@ -88,7 +88,7 @@ class ModuleCall:
             raise RobotFailedError(f"{self.title} can't be reached: {error}") from None
 
     def answered(self, body: Mapping[str, Any]) -> None:
-        """Receive an answer, on any thread; those that come after the result or the error are ignored."""
+        """Receive an answer, on any thread; answers after the result or the error are ignored."""
         with self._changed:
             if self._over:
                 return

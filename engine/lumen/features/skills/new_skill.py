@@ -52,7 +52,7 @@ never: [failed]
 
 
 def write_skill(root: Path, name: str) -> list[str]:
-    """Write the files of a skill into a project; return their paths in it.
+    """Write the files of a skill into a project; return their paths relative to `root`.
 
     Raises UsageError if the skill can't have that name, or if one of the files exists already.
     """

@@ -1,4 +1,4 @@
-"""The part of an exhibition that keeps the workshop of its robot's skills."""
+"""The exhibition's part that runs its robot's skills in a workshop."""
 
 import threading
 from collections.abc import Callable, Mapping
@@ -21,11 +21,11 @@ LOOK_PERIOD = 0.5
 TROUBLE_ROUTE, TROUBLE_TTL = "trouble", 10.0
 FAILED = "error.execution"
 REAL_SKILLS = "real_skills"
-"""The option of a plan whose story runs the code of skills."""
+"""The plan's option that lets a story run the skills' code."""
 
 
 class SkillsPart(Part):
-    """Keeps the processes of skills, and starts those of `warm` ones; the robot's calls find them here."""
+    """Manages the skills' processes for the robot's calls, and starts those of `warm` skills."""
 
     name = "skills"
     patient = True
@@ -46,7 +46,7 @@ class SkillsPart(Part):
 
     @property
     def said(self) -> Mapping[str, Any]:
-        """The hashes of the code of skills, by which the code of two houses can be compared, and the skills' states."""
+        """The skills' states, and the hashes of their code for comparing two houses; empty without skills."""
         hashes, states = self.workshop.hashes, self.workshop.states
         return {**({"skills": hashes} if hashes else {}), **({SKILL_STATES: states} if states else {})}
 
@@ -59,7 +59,7 @@ class SkillsPart(Part):
         self._look_after(project)
 
     def _look_after(self, project: Project) -> None:
-        """Start to watch the code of skills, if the project has any and the part has begun."""
+        """Start watching the skills' code, if the project has skills and the part has begun."""
         if self._begun and project.verbs and not self._thread.started:
             self._thread.start()
 
@@ -70,7 +70,7 @@ class SkillsPart(Part):
             self._thread.join(1.0)
 
     def _look(self) -> None:
-        """Check the code of skills for changes until the part closes."""
+        """Check the skills' code for changes until the part closes."""
         while not self._ending.is_set():
             self.workshop.look()
             self._ending.wait(LOOK_PERIOD)
@@ -89,7 +89,7 @@ class SkillsPart(Part):
 
 
 class PretendedSkillsPart(Part):
-    """Replaces the skills' part where no skill's code runs, as in a story; prints a note if the robot is real."""
+    """Replaces SkillsPart if no skill's code runs, as in a story; prints a note if the robot is real."""
 
     name = "skills"
     patient = True
@@ -110,9 +110,9 @@ class PretendedSkillsPart(Part):
 
 
 def skills(services: Services) -> Part | None:
-    """Make the part: a story and a recording robot run no code of skills without REAL_SKILLS.
+    """Make the part; without REAL_SKILLS, a story or a recording robot runs no skill's code.
 
-    It is None if no code runs and the project has no skills.
+    Return None if no code runs and the project has no skills.
     """
     plan = services.plan
     hall = services.setup.hall

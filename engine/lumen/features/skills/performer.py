@@ -1,4 +1,4 @@
-"""The performer of skills: passes a call to a program, and the program's requests to the robot and the bus."""
+"""Performs skills: passes a call to a program, and the program's requests to the robot and the bus."""
 
 import logging
 from collections.abc import Callable, Mapping
@@ -23,18 +23,18 @@ from lumen.run.sending import send
 LOOK = 0.25
 """The time between two checks of the memory that a program uses [s]."""
 MAX_TEXT = 1_000
-"""The greatest number of characters of a text that a program makes the robot say, and of its messages."""
+"""The maximum length of a program's texts for speech and for the transcript [characters]."""
 MAX_REQUESTS = 200
-"""The greatest number of texts and messages that a program may send during a call."""
+"""The maximum number of texts and messages that a program can send during a call."""
 
 _log = logging.getLogger(__name__)
 
 
 def perform(call: SkillCall) -> Mapping[str, Any]:
-    """Perform a skill by its program. Raises RobotError if it fails.
+    """Perform a skill with its program; return the result, empty after a cancellation. Raises RobotError if it fails.
 
-    Without a workshop no program runs: the call takes the skill's usual time and returns the default result, in a story
-    on purpose, otherwise with a warning.
+    Without a workshop no program runs: the call takes the skill's usual time and returns the default result. Outside of
+    stories, a warning is logged.
     """
     workshop, skill = workshop_of(call.row), call.row.details
     if workshop is None or not isinstance(skill, Skill):
@@ -51,7 +51,7 @@ def perform(call: SkillCall) -> Mapping[str, Any]:
 
 
 class _Performance:
-    """One call, performed by a process."""
+    """A call that a process or a module performs."""
 
     def __init__(self, call: SkillCall, workshop: Workshop, process: SkillProcess | ModuleCall) -> None:
         self._call, self._workshop, self._process = call, workshop, process
@@ -75,9 +75,9 @@ class _Performance:
         return {}
 
     def _heard(self, message: Mapping[str, Any]) -> Mapping[str, Any] | None:
-        """Carry out a message of the program; return the result, None if the call continues.
+        """Process a message of the program; return the result, None if the call continues.
 
-        Raises RobotFailedError if the program reports an error, or is gone.
+        Raises RobotFailedError if the program reports an error, returns no object, or has ended.
         """
         skill, tell = self._call.skill, self._workshop.tell
         match message:
@@ -103,9 +103,9 @@ class _Performance:
         return None
 
     def _request(self, request: Callable[[], str]) -> None:
-        """Pass a request on to the bus, and report one that can't be sent.
+        """Make a request to the bus, and report its error.
 
-        Raises RobotFailedError beyond `MAX_REQUESTS`.
+        Raises RobotFailedError if the call exceeds `MAX_REQUESTS`.
         """
         self._sent += 1
         if self._sent > MAX_REQUESTS:
@@ -140,7 +140,7 @@ class _Performance:
             self._killed(f"it did not end within {GRACE * 1_000:.0f} ms of its cancel")
 
     def _killed(self, reason: str) -> str:
-        """Kill the program and report that; return the reported message."""
+        """Kill the program, or give up a module's call; return the message that reports it."""
         self._process.kill(reason)
         done = "was killed" if isinstance(self._process, SkillProcess) else "is given up"
         message = f"{self._process.title} {done}: {reason}"

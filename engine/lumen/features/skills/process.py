@@ -1,4 +1,4 @@
-"""The process of a skill: a program under limits that performs one call at a time, by lines of JSON."""
+"""A skill's process: a program under limits that performs one call at a time and exchanges lines of JSON."""
 
 import json
 import os
@@ -22,29 +22,29 @@ from lumen.upkeep.threads import WatchedThread
 GRACE = 0.5
 """The time that a program has to end a cancelled call, or to exit, before it is killed [s]."""
 MAX_OUTPUT_BYTES = 1 * MEGABYTE
-"""The greatest output of a program for one call, answers included [bytes]."""
+"""The maximum output of a program for one call, including answers [bytes]."""
 MAX_UNREAD_MESSAGES = 1_000
 MAX_PRINTED_LINES = 40
-"""The most printed lines that are shown within `PRINT_PERIOD`; further ones are only counted."""
+"""The most printed lines that are shown within `PRINT_PERIOD`; further lines are only counted."""
 PRINT_PERIOD = 1.0
 MAX_PRINTED_CHARACTERS = 300
 WRITE_PATIENCE = 1.0
-"""The time that a program may leave its input unread [s]."""
+"""The time limit for a program to read its input [s]."""
 DRAIN = 0.05
 """The time to wait for the last output of a program [s]."""
 HEADROOM = 4
-"""The multiple of `memory` that the system lets a program reserve; what it really uses is measured."""
+"""The multiple of `memory` that a program can reserve; its actual use is measured."""
 
 _MARK = "LUMEN_SKILL"
-"""The environment variable by which the children of a program are found, even outside its process group."""
+"""The environment variable that identifies a program's children, even outside its process group."""
 _ENDS, _NEWS = ("result", "error"), ("wait", "progress", "say", "publish", "loaded")
 
 
 class SkillProcess:
-    """A program, started in `folder` with a process group of its own; `tell` shows a line that it printed.
+    """A program, started in `folder` in a new process group; `tell` receives the lines that it prints.
 
-    `memory` is what it may use [MB]. `ended` is the reason why it is gone, and is empty while it runs. Raises
-    RobotFailedError if it can't be started.
+    `memory` is its limit [MB]. `ended` is the reason for its end; empty while it runs. Raises RobotFailedError if it
+    can't be started.
     """
 
     def __init__(
@@ -105,7 +105,7 @@ class SkillProcess:
         self.send({"call": self._call, "skill": skill, "arguments": dict(arguments)})
 
     def expect(self, wake: Callable[[], None]) -> None:
-        """Call `wake` when messages arrive before the first call, or at once if there are any."""
+        """Call `wake` when messages arrive before the first call, or immediately if there are any already."""
         with self._changed:
             self._wake = wake
             here = bool(self._messages)
@@ -124,7 +124,7 @@ class SkillProcess:
                 if left <= 0 or not _ready((self._input,), select.POLLOUT, left):
                     raise RobotFailedError(f"the program of `{self.skill}` does not read its input") from None
             except (OSError, ValueError):
-                return  # it has ended, which the other thread reports
+                return  # the program has ended, which the reading thread reports
 
     def order(self, **message: Any) -> None:
         """Send a message about the call. Raises RobotFailedError if the program does not read its input."""
@@ -134,20 +134,20 @@ class SkillProcess:
         return bool(self._messages)
 
     def take(self) -> list[Mapping[str, Any]]:
-        """Return the call's messages since the last `take`; a final one has `result`, `error` or `ended`."""
+        """Return the call's messages since the last `take`; the final message has `result`, `error` or `ended`."""
         with self._changed:
             taken = list(self._messages)
             self._messages.clear()
         return taken
 
     def await_end(self, timeout: float) -> bool:
-        """Wait until the call has ended; return whether it has, within `timeout` [s] of real time."""
+        """Wait at most `timeout` [s] of real time for the end of the call; return whether it has ended."""
         with self._changed:
             return self._changed.wait_for(lambda: self._over or bool(self.ended), timeout)
 
     @property
     def fault(self) -> str:
-        """The reason to end the program now: it and its children use too much memory; else empty."""
+        """The reason to kill the program, if it and its children use more than `memory`; else empty."""
         if self.ended:
             return ""
         used = sum(_pages(pid) for pid in _family(self._popen.pid)) * resource.getpagesize() / self._memory
@@ -162,7 +162,7 @@ class SkillProcess:
         self.kill()
 
     def kill(self, reason: str = "") -> None:
-        """Kill the program and all its children; `reason` becomes `ended`, unless it has ended before."""
+        """Kill the program and all its children; `ended` becomes `reason`, unless the program ended earlier."""
         with self._changed:
             self.ended = self.ended or reason or "it was ended"
         with self._killing:
@@ -177,18 +177,21 @@ class SkillProcess:
     def _read(self) -> None:
         """Read the program's output until it has ended; this thread sleeps while there is no output."""
         with closing(self._stream(self._popen.stdout)) as answers, closing(self._stream(self._popen.stderr)) as prints:
-            # Prints come first: what a program printed before an answer is then shown before the answer has an effect.
+            # Prints are first: the lines before an answer are then shown before the answer has an effect.
             takers = {prints.fileno(): _Lines(self._print), answers.fileno(): _Lines(self._line)}
             while answers.fileno() in takers and not self.ended:
                 self._take(takers)
-            if prints.fileno() in takers:  # what it wrote before it closed its standard output
+            if prints.fileno() in takers:  # the prints before it closed its standard output
                 self._take({prints.fileno(): takers[prints.fileno()]}, DRAIN)
         if not self.ended:
             self.kill(self._exit())
         self._put({"ended": self.ended})
 
     def _take(self, takers: "dict[int, _Lines]", timeout: float | None = None) -> None:
-        """Wait for output, at most `timeout` [s], and pass it to its taker; remove closed streams from `takers`."""
+        """Wait at most `timeout` [s] for output and pass it to its taker; remove closed streams from `takers`.
+
+        A program with more than MAX_OUTPUT_BYTES is killed.
+        """
         for stream in _ready(takers, select.POLLIN, timeout):
             content = os.read(stream, 65_536)
             self._output += len(content)
@@ -267,7 +270,7 @@ class _Lines:
 
 
 def _ready(streams: Iterable[int], event: int, timeout: float | None) -> list[int]:
-    """Wait at most `timeout` [s], or for ever, and return the streams that can be read or written, in their order."""
+    """Wait at most `timeout` [s], None for no limit; return the streams ready for `event`, in their order."""
     poll = select.poll()
     for stream in streams:
         poll.register(stream, event)

@@ -1,4 +1,4 @@
-"""The Python file of a skill, read without running it: its function, and that function's parameters."""
+"""Checks a skill's Python file without running it: its function, and the function's parameters."""
 
 import ast
 from collections.abc import Iterable, Iterator, Mapping
@@ -7,11 +7,11 @@ from typing import Any, NamedTuple
 from lumen.language.diagnostics import did_you_mean
 
 _KINDS = {"int": "integer", "float": "number", "str": "string", "bool": "boolean", "dict": "object", "list": "array"}
-"""The types of Python that an annotation can name, and those of JSON Schema."""
+"""The Python types that an annotation can name, and their JSON Schema types."""
 
 
 class CodeFault(NamedTuple):
-    """A fault at a place of a Python file; lines and columns count from 1, the end is exclusive."""
+    """A fault in a Python file; lines and columns count from 1, and the end is exclusive."""
 
     line: int
     column: int
@@ -21,7 +21,7 @@ class CodeFault(NamedTuple):
 
 
 def syntax_fault(content: bytes, file: str) -> CodeFault | None:
-    """Return the fault that keeps Python from reading a file; None if it can be read."""
+    """Return the fault that keeps Python from parsing a file; None if it can be parsed."""
     read = _read(content, file)
     return read if isinstance(read, CodeFault) else None
 
@@ -41,7 +41,7 @@ def _read(content: bytes, file: str) -> ast.Module | CodeFault:
 
 
 def code_faults(content: bytes, file: str, skill: str, arguments: Mapping[str, Any]) -> Iterator[CodeFault]:
-    """Yield the faults of a file as the code of the skill of that name; `arguments` is its schema `in`."""
+    """Yield the faults of a file that contains the code of `skill`, whose schema `in` is `arguments`."""
     read = _read(content, file)
     if isinstance(read, CodeFault):
         yield read
@@ -69,7 +69,7 @@ _FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef)
 
 
 def _functions(statements: Iterable[ast.AST]) -> Iterator[ast.FunctionDef | ast.AsyncFunctionDef]:
-    """Yield all functions in statements, also those in classes, branches and functions."""
+    """Yield all functions in statements, including those nested in classes, branches and functions."""
     for statement in statements:
         if isinstance(statement, _FUNCTIONS):
             yield statement
@@ -89,7 +89,7 @@ def _marked(function: ast.FunctionDef | ast.AsyncFunctionDef) -> bool:
 
 
 def _parameters(function: ast.FunctionDef, schema: Mapping[str, Any]) -> Iterator[CodeFault]:
-    """Yield the differences between the parameters of a function and the arguments of its skill."""
+    """Yield the differences between a function's parameters and its skill's arguments."""
     properties, required = schema.get("properties", {}), schema.get("required", ())
     given = function.args
     positional = [*given.posonlyargs, *given.args]
@@ -112,7 +112,7 @@ def _parameters(function: ast.FunctionDef, schema: Mapping[str, Any]) -> Iterato
             yield _at(each, len(each.arg), message, f"write `{each.arg}=None`, or give it a `default` in the manifest")
         elif isinstance(inner, Mapping):
             yield from _annotation(each, inner)
-    if given.kwarg is None and not unknown:  # one of the unknown ones is probably meant
+    if given.kwarg is None and not unknown:  # an unknown parameter is probably a misspelt argument
         known = {each.arg for each in named}
         for name in properties:
             if name not in known:
@@ -122,7 +122,7 @@ def _parameters(function: ast.FunctionDef, schema: Mapping[str, Any]) -> Iterato
 
 
 def _annotation(parameter: ast.arg, schema: Mapping[str, Any]) -> Iterator[CodeFault]:
-    """Report an annotation whose type differs from that in the argument's schema."""
+    """Yield a fault if the annotation's type differs from the type in the argument's schema."""
     said, kind = parameter.annotation, schema.get("type")
     if not (isinstance(said, ast.Name) and said.id in _KINDS and isinstance(kind, str)):
         return

@@ -1,4 +1,4 @@
-"""The programs of skills: whether they are in the project, and whether Python code fits its manifest."""
+"""Checks that the skills' programs are in the project, and that Python code fits its manifest."""
 
 import os
 from pathlib import PurePosixPath

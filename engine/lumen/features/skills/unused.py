@@ -1,4 +1,4 @@
-"""Skills that neither a behaviour nor a motion uses."""
+"""Reports skills that neither a behaviour nor a motion uses."""
 
 from lumen.language.commands import Do
 from lumen.language.diagnostics import INFO, Code, Place, has_errors
@@ -10,7 +10,7 @@ UNUSED_SKILL = Code("unused-skill", "skills", INFO, "no behaviour uses a skill")
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report each skill that neither a behaviour nor a motion uses, in projects without errors only."""
+    """Report each skill that neither a behaviour nor a motion uses, but only in projects without errors."""
     if not draft.verbs.rows or not draft.whole_behaviors or has_errors(draft.diagnostics):
         return
     actions = (site.step.action for machine in draft.behaviors.values() for site in action_sites(machine))

@@ -1,4 +1,4 @@
-"""The workshop of a robot: the processes of its skills, lent to one call after another, and restarted if they end."""
+"""A robot's workshop: the processes of its skills, lent to successive calls, and restarted if they end."""
 
 import hashlib
 import os
@@ -25,14 +25,14 @@ from lumen.upkeep.ratelimit import Backoff
 from lumen.upkeep.threads import WatchedThread
 
 MAX_PROCESSES = 4
-"""The greatest number of calls of one skill at the same time."""
+"""The maximum number of simultaneous calls of a skill's program."""
 FIRST_PAUSE, LONGEST_PAUSE = 0.5, 30.0
 """The first and the longest pause before a program that crashed is started again [s]."""
 LOADING = 20.0
-"""The time that the code of a skill may take to load [s]."""
+"""The time limit for loading a skill's code [s]."""
 MAX_CODE_BYTES = 4_000_000
 MAX_TROUBLE = 200
-"""The most characters of a trouble in the states of skills."""
+"""The maximum length of a trouble in the skills' states [characters]."""
 RUNNING, READY, PAUSED, IDLE = "running", "ready", "paused", "idle"
 """The states of a skill: a call is under way; a program waits for a call; the pause after a crash is not over; the
 next call starts a program."""
@@ -47,22 +47,22 @@ class _Code(NamedTuple):
     stamp: tuple[tuple[str, int, int], ...]
     """The path, time of change [ns] and size [bytes] of each file."""
     hash: str
-    """The SHA-256 hash of the skill's target and of its files."""
+    """The SHA-256 hash of the skill's target and its files."""
     source: str = ""
     """The text of a Python file; empty for other programs."""
 
 
 @dataclass
 class _Bench:
-    """The processes of one skill."""
+    """The processes and the state of a skill."""
 
     row: VerbRow
     code: _Code | None = None
-    """The code that calls use; None before the first call."""
+    """The code that calls use; None before a program was needed."""
     seen: _Code | None = None
-    """The code that was read before the first call."""
+    """The code that was read while `code` was None."""
     refused: tuple[tuple[str, int, int], ...] = ()
-    """The stamp of the newest code if that has a syntax error, else empty."""
+    """The stamp of the newest code if it has a syntax error, else empty."""
     idle: list[SkillProcess] = field(default_factory=list)
     """The processes that perform no call."""
     busy: list[SkillProcess] = field(default_factory=list)
@@ -74,13 +74,13 @@ class _Bench:
     crashes: int = 0
     """The number of times that a program ended by itself or was killed."""
     trouble: str = ""
-    """Why the last call failed, or its program was killed; empty after a call that was performed."""
+    """Why the last call failed, or its program was killed; empty after a successful call."""
     since: float = field(default_factory=time.time)
     """When the skill's state last changed [s since 1970]."""
     state: str = ""
 
     def now(self) -> str:
-        """Return the present state, and record the time if it has changed."""
+        """Return the current state, and update `since` if it has changed."""
         if self.busy or self.remote:
             state = RUNNING
         elif any(one.alive for one in self.idle):
@@ -103,7 +103,7 @@ class Workshop:
     """Lends processes to calls of the skills of a `project`.
 
     `tell` prints a line about a skill; `report` prints a problem, which other processes and the console show as well.
-    `failed` is called with a skill and the reason why a call of it failed, on the thread of that call.
+    `failed` receives a skill and the reason why a call failed, on the call's thread.
     """
 
     def __init__(
@@ -125,7 +125,7 @@ class Workshop:
     def use(self, project: Project) -> None:
         """Use the skills of this project from now on.
 
-        Calls of removed skills are ended, and idle processes of changed skills are closed.
+        Processes of removed skills are ended, and idle processes of changed skills are closed.
         """
         with self._lock:
             self.project = project
@@ -141,7 +141,7 @@ class Workshop:
                 process.kill("the skill was removed")
 
     def warm(self) -> None:
-        """Start the programs of `warm` skills that have no process; report those that fail."""
+        """Start the programs of `warm` skills that have no process; report programs that can't be started."""
         for name, bench in list(self._benches.items()):
             if bench.skill.warm and bench.skill.kind != "module" and not (bench.idle or bench.busy):
                 try:
@@ -154,7 +154,7 @@ class Workshop:
                         bench.idle.append(process)
 
     def look(self) -> None:
-        """Use code that was changed, and start the programs of `warm` skills.
+        """Use changed code, and start the programs of `warm` skills.
 
         If new code has a syntax error, the error is reported, and the old code stays in use.
         """
@@ -169,17 +169,14 @@ class Workshop:
 
     @property
     def hashes(self) -> dict[str, str]:
-        """The hash of each skill's code, as calls use it or the first call would.
-
-        Skills whose code was not read are left out.
-        """
+        """The hash of each skill's current code; skills whose code has not been read are left out."""
         with self._lock:
             found = {name: bench.code or bench.seen for name, bench in self._benches.items()}
         return {name: code.hash for name, code in found.items() if code}
 
     @property
     def states(self) -> dict[str, dict[str, Any]]:
-        """The state of each skill as JSON data, with its last trouble and how often its program crashed."""
+        """Each skill's state as JSON data, with the time of its last change, the last trouble and number of crashes."""
         with self._lock:
             return {
                 name: {
@@ -192,7 +189,7 @@ class Workshop:
             }
 
     def processes(self, name: str) -> list[SkillProcess]:
-        """Return the processes of a skill that have not ended."""
+        """Return the processes of a skill that have not ended; none if there is no such skill."""
         with self._lock:
             bench = self._benches.get(name)
             return [one for one in (*bench.idle, *bench.busy) if one.alive] if bench else []
@@ -207,7 +204,8 @@ class Workshop:
 
         Afterwards the process is kept for the next call, unless its code is outdated or another process is idle.
 
-        Raises RobotError if the skill was removed, has too many calls, or has a program that can't be started.
+        Raises RobotError if the skill was removed, has too many calls, or has a program that can't be started, or if
+        the call is cancelled during the pause after a crash.
         """
         name = call.skill
         match call.row.details:
@@ -242,7 +240,7 @@ class Workshop:
 
     @contextmanager
     def _counted(self, name: str) -> Iterator[None]:
-        """Count a module's call in `remote` as long as the call is under way."""
+        """Count a module's call in `remote` while it is under way."""
         with self._lock:
             bench = self._benches.get(name)
             if bench:
@@ -255,7 +253,7 @@ class Workshop:
                     bench.remote -= 1
 
     def failed(self, name: str, reason: str) -> None:
-        """Note that a call of a skill failed, and why."""
+        """Record that a call of a skill failed, and why; pass both to the constructor's `failed`."""
         with self._lock:
             if bench := self._benches.get(name):
                 bench.trouble = reason[:MAX_TROUBLE]
@@ -270,14 +268,14 @@ class Workshop:
                 bench.again = time.monotonic() + bench.backoff.next()
 
     def worked(self, name: str) -> None:
-        """Record that a call was performed: clear the trouble, and make the next pause the shortest again."""
+        """Record that a call succeeded: clear the trouble, and reset the pause to the shortest."""
         with self._lock:
             if bench := self._benches.get(name):
                 bench.backoff.reset()
                 bench.trouble = ""
 
     def close(self) -> None:
-        """Kill all programs; programs are lent to no further calls."""
+        """Kill all programs, and refuse further calls of programs."""
         with self._lock:
             self._closed = True
             processes = [one for bench in self._benches.values() for one in (*bench.idle, *bench.busy)]
@@ -288,7 +286,7 @@ class Workshop:
         self._answers.close()
 
     def _pause(self, call: SkillCall, bench: _Bench) -> None:
-        """Wait until a program that crashed may be started again. Raises RobotRefusedError if the call is cancelled."""
+        """Wait until a crashed program can be started again. Raises RobotRefusedError if the call is cancelled."""
         left = bench.again - time.monotonic()
         if left > 0 and not any(one.alive for one in bench.idle):
             self.tell(call.skill, f"its program is started again in {left:.1f} s")
@@ -299,9 +297,9 @@ class Workshop:
                 raise RobotRefusedError(f"`{call.skill}` was cancelled")
 
     def _refresh(self, name: str, bench: _Bench) -> None:
-        """Use the code as it is on the disk now, unless Python can't read it.
+        """Use the code that is on the disk now; report Python code with a syntax error, and keep the earlier code.
 
-        Raises RobotFailedError if Python can't read it and there is no earlier code.
+        Raises RobotFailedError if there is no earlier code.
         """
         skill = bench.skill
         stamp = _stamp(self._root, skill)
@@ -367,8 +365,8 @@ def _in_background(work: Callable[[], None]) -> None:
 def _files(root: Path, skill: Skill) -> list[Path]:
     """Return the files of a skill's program.
 
-    For a Python file, these are all Python files in the same folder, because it may import them. For a command, they
-    are the words that name files of the project.
+    For a Python file, these include all Python files in the same folder, which it can import. For a command, they are
+    its words that name existing files.
     """
     if skill.kind == "python":
         own = root / skill.target[0]
@@ -402,7 +400,7 @@ _opening = threading.Lock()
 
 
 def open_workshop(workshop: Workshop) -> Callable[[], None]:
-    """Let calls find the workshop by their project's folder and robot; return the function that closes it."""
+    """Register the workshop for calls of its project's folder and robot; return the function that closes it."""
     key = (workshop.project.root, workshop.project.robot)
 
     def close() -> None:
@@ -417,21 +415,21 @@ def open_workshop(workshop: Workshop) -> Callable[[], None]:
 
 
 _pretending: list[tuple[str, str]] = []
-"""The project's folder and the robot of each exhibition that pretends its skills on purpose."""
+"""The project's folder and the robot of each exhibition that deliberately only pretends its skills."""
 
 
 def pretend(project: Project) -> Callable[[], None]:
-    """Note that the calls of this project's robot run no code on purpose; return the function that removes the note."""
+    """Record that this project's robot deliberately runs no skill's code; return the function that undoes this."""
     key = (project.root, project.robot)
     _pretending.append(key)
     return lambda: _pretending.remove(key)
 
 
 def is_pretending(row: VerbRow) -> bool:
-    """Return whether an exhibition of a skill's project and robot runs no code on purpose, as a story does."""
+    """Return whether an exhibition of a skill's project and robot deliberately runs no code, as a story does."""
     return (row.root, row.robot) in _pretending
 
 
 def workshop_of(row: VerbRow) -> Workshop | None:
-    """Return the open workshop of a skill's project and robot; None in a story, and outside of an exhibition."""
+    """Return the open workshop of a skill's project and robot; None if there is none, as in a pretending story."""
     return _open.get((row.root, row.robot))

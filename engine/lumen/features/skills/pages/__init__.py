@@ -1,1 +1,1 @@
-"""A page for each code of skills, in the form that `lumen.lint.pages` describes."""
+"""The pages for the skills' diagnostic codes, in the format that `lumen.lint.pages` describes."""
