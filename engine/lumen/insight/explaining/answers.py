@@ -49,7 +49,7 @@ class WhyNotAnswer:
 
     what: str
     at: float
-    """The time until which it did not happen [s since 1970, in UTC]."""
+    """The time up to which the subject of the question did not happen [s since 1970, in UTC]."""
     reasons: tuple[Reason, ...]
 
     def to_json(self) -> dict[str, Any]:

@@ -20,15 +20,15 @@ from lumen.language.machines import MachineDefinition
 ValuePath = tuple[str, ...]
 """The keys that lead to a value: `("context", "tries")`, `("event", "data", "result")`."""
 ABSENT = object()
-"""Returned for a path that does not exist."""
+"""The value that `value_at` returns for a path that does not exist."""
 MAX_VALUES = 24
-"""The greatest number of values that are tried for one path."""
+"""The maximum number of values that are tried for one path."""
 FIRST = 6
 """The number of values from the guard that are tried before plain values; the others, possibly many, come after."""
 
 
 def boundaries(machine: MachineDefinition, sources: Iterable[str], scope: Scope) -> dict[ValuePath, list[Any]]:
-    """Return other values that may change a guard, for each path of the context and the event's data that guards read.
+    """Return values that may change a guard, for each path of the context and the event's data that guards read.
 
     The values nearest to the present one come first.
     """

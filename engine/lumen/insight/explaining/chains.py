@@ -19,7 +19,7 @@ from lumen.statechart.command_ids import CommandAnswer, answer_of, inner_id
 from lumen.statechart.values import Timer
 
 LinkWalk: TypeAlias = Iterator["Link | partial[LinkWalk]"]
-"""Links, and at most one continuation at the end, because a chain may be longer than Python's stack allows."""
+"""Links, and at most one continuation at the end, because a chain can be longer than Python's stack allows."""
 
 MAX_LINKS = 2_000
 """The number of links at which the search stops."""
@@ -75,7 +75,7 @@ class Chain:
         yield partial(self.because, number, deed)
 
     def because(self, number: int, deed: Deed) -> LinkWalk:
-        """Yield the search for what made an action run."""
+        """Yield the search for the trigger of an action."""
         if deed.block == "do" and deed.microstep:
             yield partial(self.doing, number, deed.owner, deed.machine.states[deed.state].name, deed.microstep)
         elif deed.microstep:
@@ -84,7 +84,7 @@ class Chain:
             yield partial(self.trigger, number, deed.owner)
 
     def doing(self, number: int, owner: str, state: str, until: TracedMicrostep | None = None) -> LinkWalk:
-        """Yield the search for what entered a state, or made its `do` continue, in that step."""
+        """Yield the search for the transition or event that, in that step, entered a state or continued its `do`."""
         entered = self.history.trace(number).entering(owner, state, until)
         if entered:
             yield partial(self.microstep, number, entered, state=state)
@@ -176,7 +176,7 @@ class Chain:
                 yield self._link(number, found.kind, found.text, id=found.id, values=found.values)
 
     def timer(self, number: int, event: Event, timer: Timer) -> LinkWalk:
-        """Yield the end of a timer, and the search for what set it."""
+        """Yield the end of a timer, and the search for the action or state that set it."""
         id, owner = inner_id(event.sendid)
         machine = machine_within(self.history.steps[number], owner)
         text, place = f"{event.name}, {timer.delay:g} s after it was sent", None
@@ -201,7 +201,7 @@ class Chain:
             yield partial(self.doing, when, owner, machine.states[timer.state].name)
 
     def _beginning(self, number: int, step: TracedMicrostep) -> LinkWalk:
-        """Yield the search for what started a machine; for an invoked one, that is its host's `invoke`."""
+        """Yield the search for the start of a machine; an invoked machine is started by its host's `invoke`."""
         owner = step.moment.owner
         if not owner:
             yield partial(self.trigger, number, owner)

@@ -11,8 +11,8 @@ from lumen.statechart.values import Invoked, Snapshot
 ProposedChange = Mapping[str, Any]
 """New values by their names in expressions: `event.data.result`, `context.tries`, or `quiz/context.tries` in `quiz`.
 
-Three names are special: `event` is the name of an event that must come, `state` that of a state that must be active,
-and `wait` is how long nothing else may happen [s].
+Three names are special: `event` is the name of an event that must come, `state` is the name of a state that must be
+active, and `wait` is the time for which nothing else can happen [s].
 """
 
 

@@ -10,10 +10,10 @@ from lumen.language.actions import Expression
 
 
 class GuardPart(NamedTuple):
-    """One of the conditions that a guard joins by `&&`."""
+    """One of the conditions that `&&` joins in a guard."""
 
     text: str
-    """The condition as it is written."""
+    """The condition as written."""
     holds: bool
     """Whether the condition is true. A condition that has no value counts as false (SCXML 5.9.1)."""
     values: Mapping[str, Any]

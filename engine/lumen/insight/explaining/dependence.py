@@ -1,6 +1,6 @@
 """The earlier inputs on which an outcome rests; without all others, the outcome would have been the same.
 
-The answer may include too many: it contains each input that could have decided, not only those that did.
+The answer can include too many inputs: it contains each input that could have decided, not only those that did.
 """
 
 from collections.abc import Callable, Iterator
@@ -29,8 +29,8 @@ def needed(history: StepHistory, number: int) -> tuple[int, ...]:
 def directly_needed(history: StepHistory, number: int) -> Iterator[int]:
     """Yield the steps that set what a step depended on.
 
-    These are its active states, the context that it read, and its timer or command. Yields 0 for anything that the
-    first step set; a number may occur several times.
+    These are its active states, the context that it read, and its timer or command. The first step is 0; a number can
+    occur several times.
     """
     one = history.steps[number]
     before, event = one.before, one.step.event
@@ -66,7 +66,7 @@ def _changes(key: str, one: RecordedStep) -> bool:
 
 
 def _timers(snapshot: Snapshot | None) -> set[str]:
-    """Return the ids of all timers that run, those of invoked behaviours included."""
+    """Return the ids of all running timers, including those of invoked behaviours."""
     inner = snapshot.invoked.values() if snapshot else ()
     own = (timer.id for timer in snapshot.timers) if snapshot else ()
     return {*own, *(id for child in inner for id in _timers(child.snapshot))}

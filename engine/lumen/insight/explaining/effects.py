@@ -152,7 +152,7 @@ def origin(one: RecordedStep, event: Event) -> EventOrigin | None:
 
 
 def _said(cause: Cause) -> EventOrigin | None:
-    """Return the cause that the event itself carries; None for other kinds of causes."""
+    """Return the cause given in the event itself; None for other kinds of causes."""
     values = {key: value for key in ("key", "sender") if (value := getattr(cause, key))}
     by = f", from {cause.sender}" if cause.sender else ""
     match cause.kind:

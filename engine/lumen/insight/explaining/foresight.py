@@ -12,14 +12,14 @@ from lumen.statechart.stepping import step
 from lumen.statechart.values import Snapshot
 
 MAX_DEEDS = 8
-"""The greatest number of commands that are listed."""
+"""The maximum number of commands that are listed."""
 
 
 def foreseen(machine: MachineDefinition, snapshot: Snapshot, event: Event) -> list[dict[str, Any]]:
     """Return what the robot would say and do because of an event, in order: `{"verb": "say", "text": "Hello", …}`.
 
-    Each command is assumed to end as usual, and nothing else to happen. The list ends at the next transition, after
-    `MAX_DEEDS`, or if the step raises a LumenError.
+    It assumes that each command ends as usual, and that nothing else happens. The list ends at the next transition,
+    after `MAX_DEEDS`, or if the step raises a LumenError.
     """
     found: list[dict[str, Any]] = []
     left, entered = deque([event._replace(at=max(event.at, snapshot.at))]), False

@@ -1,4 +1,4 @@
-"""The examples of a project's functions as tests: each call must give the value in its file."""
+"""The examples of a project's functions as tests: each call must return the value in its file."""
 
 import json
 from collections.abc import Iterable, Iterator
@@ -52,7 +52,7 @@ def _wrong(function: FunctionDefinition, example: FunctionExample) -> str:
 
 
 def _shown(value: Any) -> str:
-    """Return a JSON value as an expression writes it."""
+    """Return a JSON value as written in an expression."""
     try:
         return unparse(literal(value))
     except TypeError:

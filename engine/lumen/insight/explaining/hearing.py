@@ -12,7 +12,7 @@ from lumen.talk.hearing import Dropped, hearing_of, said_in
 RowFate = Literal["taken", "not found", "guard", "better row"] | Dropped
 """Whether a row is taken, and if not, why. `taken` is the best row of its state, even if another state has priority."""
 MAX_QUOTED = 80
-"""The greatest number of characters of a sentence that are shown."""
+"""The maximum number of characters of a sentence that are shown."""
 
 
 class HeardRow(NamedTuple):
@@ -110,9 +110,9 @@ def _rows(machine: MachineDefinition, state: str, scope: Scope) -> Iterator[Hear
 
 
 def _found(machine: MachineDefinition, row: HeardRow, find: Find, text: str) -> HeardRow:
-    """Return the row with the words that were found, and the part of the sentence that explains its fate.
+    """Return the row with the words that were found, and the text that explains its fate.
 
-    That is the whole sentence if the phrase counts, else the clause.
+    The text is the whole sentence if the phrase counts, else the clause.
     """
     reading = hearing_of(machine).read(text)
     inside = [i for i, clause in enumerate(reading.clauses) if clause == reading.clauses[find.start]]

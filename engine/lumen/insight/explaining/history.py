@@ -30,7 +30,7 @@ class RecordedStep(NamedTuple):
     step: Step
     """The step."""
     project: Project | None = None
-    """The bundle, which gives the places in files; None for a machine without a bundle."""
+    """The bundle, which has the places in files; None for a machine without a bundle."""
 
     @property
     def at(self) -> float:

@@ -1,4 +1,4 @@
-"""The names that a question may use: states, motions and texts of a machine and of the behaviours that it invokes."""
+"""The names that a question can use: states, motions and texts of a machine and its invoked behaviours."""
 
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple
@@ -30,7 +30,7 @@ class PlacedDeed(NamedTuple):
 
 
 def machines_in(machine: MachineDefinition, owner: str = "") -> Iterator[tuple[str, MachineDefinition]]:
-    """Yield a machine and those that it invokes, each with the ids under which it runs: `quiz`, `hint@quiz`."""
+    """Yield a machine and its invoked machines, each with the ids under which it runs: `quiz`, `hint@quiz`."""
     yield owner, machine
     for state in machine.states.values():
         for invoke in state.invoke:
@@ -93,7 +93,7 @@ def state_named(machine: MachineDefinition, name: str) -> str:
 
 
 class KnownNames:
-    """The names that a question about a recorded step may use."""
+    """The names that a question about a recorded step can use."""
 
     def __init__(self, recorded: RecordedStep) -> None:
         self.machine = recorded.machine

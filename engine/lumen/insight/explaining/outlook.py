@@ -39,7 +39,7 @@ class WayOut(NamedTuple):
     transition: Transition
     """The transition."""
     open: bool
-    """False if the transition can't be taken now, whatever event comes."""
+    """False if no event can take the transition now."""
     guard: GuardTruth | None
     """The transition's guard at this moment; None without a guard."""
     why: str
@@ -49,7 +49,7 @@ class WayOut(NamedTuple):
 
 
 class Running(NamedTuple):
-    """A behaviour that runs."""
+    """A running behaviour."""
 
     owner: str
     """The ids under which the behaviour runs; empty for the outermost."""
@@ -64,7 +64,7 @@ class Running(NamedTuple):
 
 
 def running(machine: MachineDefinition, snapshot: Snapshot, owner: str = "", host: str = "") -> Iterator[Running]:
-    """Yield a behaviour and those that run within it, each after its host."""
+    """Yield a behaviour and all behaviours that run within it, each after its host."""
     yield Running(owner, machine, snapshot, prefix_of(owner), host)
     for id, child in snapshot.invoked.items():
         inner = machine.invoked[machine.invoked_behavior(child.state, id)]

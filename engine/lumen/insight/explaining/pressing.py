@@ -17,7 +17,7 @@ from lumen.statechart.stepping import step
 from lumen.statechart.values import Snapshot, Step
 
 MAX_NAMED_STATES = 3
-"""The greatest number of states that a refusal names as those in which a button works."""
+"""The maximum number of states that a refusal names in which a button works."""
 
 
 class ShownButton(NamedTuple):
@@ -28,7 +28,7 @@ class ShownButton(NamedTuple):
     state: str
     """The outside name of the button's state."""
     key: str
-    """The button's key; empty if another button that is shown has the same one."""
+    """The button's key; empty if another shown button has the same key."""
     enabled: bool
     """Whether the button's event would be taken now."""
     reason: str
@@ -49,7 +49,7 @@ def shown_buttons(machine: MachineDefinition, snapshot: Snapshot, at: float) -> 
 
 
 def pressed(machine: MachineDefinition, snapshot: Snapshot, label: str, at: float, by: str) -> Event | str:
-    """Return the event that the button with that label, in any language, raises; a message if it can't be pressed."""
+    """Return the event of the button with that label, in any language; a message if it can't be pressed."""
     shown = shown_buttons(machine, snapshot, at)
     found = sorted((one for one in shown if one.button.named(label)), key=lambda one: not one.enabled)
     if not found:
@@ -74,7 +74,7 @@ def refusal_of(machine: MachineDefinition, snapshot: Snapshot, button: Button, a
 
 
 def takes(step: Step) -> bool:
-    """Return whether a step has transitions, here or in an invoked behaviour."""
+    """Return whether a step has transitions, in its machine or in an invoked behaviour."""
     return bool(step.transitions) or any(takes(inner) for _, inner in step.invoked)
 
 

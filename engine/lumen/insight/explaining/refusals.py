@@ -27,7 +27,7 @@ from lumen.talk.sample_sentences import of_row
 Because = Literal["inactive", "no-event", "preempted", "unheard", "guard"]
 ORDER: tuple[Because, ...] = ("guard", "unheard", "preempted", "no-event", "inactive")
 MAX_SAMPLES = 40
-"""The greatest number of samples of an event's data that are tried."""
+"""The maximum number of samples of an event's data that are tried."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +39,7 @@ class Reason:
     text: str
     """The reason in words."""
     at: float
-    """When that was decided [s since 1970, in UTC]."""
+    """The time of the decision [s since 1970, in UTC]."""
     place: Place | None = None
     """The place in the files of the guard or transition; None if unknown."""
     false: GuardPart | None = None
@@ -93,7 +93,7 @@ class TransitionRefusals:
         return any(step.moment is moment and transition in step.transitions for step in steps)
 
     def _decided(self, number: int, moment: Moment, found: CompiledTransition) -> Reason:
-        """Return the reason for a transition that was examined: its guard was false, or another one was taken."""
+        """Return the reason for an examined transition: its guard was false, or another transition was taken."""
         one, wanted, machine = self.history.steps[number], found.definition, moment.machine.chart.definition
         scope = moment.scope_of(found.source)
         false = first_false(wanted.guard, scope) if wanted.guard else None

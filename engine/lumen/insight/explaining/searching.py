@@ -22,12 +22,12 @@ from lumen.talk.hearing import said_in
 from lumen.talk.sample_sentences import of_row
 
 MAX_TRIED = 40
-"""The greatest number of steps that are taken to find a change."""
+"""The maximum number of steps that are taken to find a change."""
 MAX_EDITS = 1_000
-"""The greatest number of sets of values with which a guard is evaluated."""
+"""The maximum number of sets of values with which a guard is evaluated."""
 
 MAX_SAID = 24
-"""The greatest number of sentences that are tried for a row of `hears`."""
+"""The maximum number of sentences that are tried for a row of `hears`."""
 _SAID = ("event", "data", "result")
 
 Happens = Callable[[StepSituation], bool]
@@ -37,7 +37,7 @@ Happens = Callable[[StepSituation], bool]
 def taken(machine: MachineDefinition, owner: str, transition: Transition, goal: str) -> Happens:
     """Return a test of whether a step includes that transition of the behaviour `owner`, and enters `goal`.
 
-    The goal is checked if it is given, because a transition to a history state may enter any of several states.
+    The goal is checked if it is given, because a transition to a history state can enter any of several states.
     """
 
     def happens(situation: StepSituation) -> bool:

@@ -25,7 +25,7 @@ class FoundPhrase(NamedTuple):
     """A phrase that was found in a sentence."""
 
     name: str
-    """The name of the phrase as the row's key has it."""
+    """The name of the phrase as written in the row's key."""
     said: str
     """The words of the phrase as they were said."""
     words: int
@@ -53,7 +53,7 @@ class ExplainedRow(NamedTuple):
     state: str
     """The name of its state."""
     found: FoundPhrase | None = None
-    """The phrase that counts most, else one that does not count; None if none was found."""
+    """The phrase that counts most, else a phrase that does not count; None if none was found."""
     guard: bool | None = None
     """Whether the guard holds; None if there is no guard, or it is not evaluated."""
     error: str = ""
@@ -208,6 +208,6 @@ class _Sentence:
 
 
 def _written(row: Hears) -> dict[str, str]:
-    """Return the names of a row as its key writes them, by their full names."""
+    """Return the names as written in a row's key, by their full names."""
     words = row.key.split()
     return dict(zip(row.names, "".join(words[bool(row.way) :]).split("|"), strict=True))

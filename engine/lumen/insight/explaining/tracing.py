@@ -119,7 +119,7 @@ class TracedContext(ExecutionContext):
     owner = ""
     acting: NodePath = ()
     pending = False
-    """Whether an event has come about which nothing has been decided yet."""
+    """Whether an event has come and has not been decided yet."""
     last: TracedMicrostep | None = None
     timers_before: tuple[Timer, ...] = ()
 

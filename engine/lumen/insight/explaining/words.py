@@ -10,7 +10,7 @@ from lumen.language.machines import MachineDefinition, Transition
 from lumen.language.verbs import verb_of
 
 MAX_VALUE_CHARACTERS = 80
-"""The greatest number of characters of a value that are shown; a longer value is cut."""
+"""The maximum number of characters of a value that are shown; a longer value is cut."""
 
 
 def prefix_of(owner: str) -> str:
