@@ -1,4 +1,4 @@
-"""The differences between two blocks of actions: their texts, and everything else that they do."""
+"""The differences between two blocks of actions: in their texts, and in all other effects."""
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace

@@ -79,7 +79,7 @@ def entry_changes(
 
 
 MAX_SHOWN_CHARACTERS = 60
-"""The greatest number of characters of a text that are shown; a longer text is cut."""
+"""The maximum number of characters of a text that are shown; a longer text is cut."""
 
 
 def seconds(time: float | None) -> str:

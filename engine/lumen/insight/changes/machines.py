@@ -121,7 +121,7 @@ class _Comparison:
         return (self.new.states.get(path) or self.old.states[path]).name
 
     def mapped(self, paths: tuple[str, ...]) -> tuple[str, ...]:
-        """Return old paths as they are in the new machine; the path of a removed state stays as it was."""
+        """Convert old paths to those in the new machine; the path of a removed state is unchanged."""
         return tuple(self.images.get(path) or path for path in paths)
 
     def invokes(self, old: State, new: State, title: str) -> Iterator[Change]:

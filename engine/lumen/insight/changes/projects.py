@@ -16,7 +16,7 @@ MAX_SUMMARY_CHANGES = 4
 """The number of changes up to which a summary names each; with more, kinds with more than two changes are counted."""
 
 _SHARED_MOVEMENTS = ("gestures", "life")
-"""The folders in motions/ that are for all robots; every other folder is named after a robot's model."""
+"""The folders in motions/ for all robots; every other folder is named after a robot's model."""
 _SELF = ("root", "hash", "documents", "told_apart")
 """Fields that are no settings: those of the files themselves, and one that follows from `robots`."""
 

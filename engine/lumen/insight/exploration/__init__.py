@@ -18,7 +18,7 @@ from lumen.language.machines import MachineDefinition, Transition
 __all__ = ["Exploration", "ExplorationFinding", "PathStep", "Stimulus", "StimulusKind", "explore"]
 
 MAX_CONFIGURATIONS = 10_000
-"""The default for the greatest number of configurations that are expanded."""
+"""The default for the maximum number of configurations that are expanded."""
 
 
 @dataclass(frozen=True)
@@ -26,7 +26,7 @@ class Exploration:
     """The result of a search."""
 
     findings: tuple[ExplorationFinding, ...]
-    """The faults that were found."""
+    """The faults found."""
     configurations: int
     """The number of configurations that were expanded."""
     steps: int

@@ -15,7 +15,7 @@ from lumen.language.numbers import is_number
 from lumen.statechart import Awaiting, Fork, Invoked, Position, Snapshot, Within
 
 MAX_ITEMS_COMPARED = 4
-"""The greatest number of items of a list or map in the context that are compared; the others are ignored."""
+"""The maximum number of items of a list or map in the context that are compared; further items are ignored."""
 
 ConfigurationKey = tuple[Any, ...]
 """The hashable key of a configuration."""

@@ -1,4 +1,4 @@
-"""The expressions that decide what a behaviour does, state by state."""
+"""The expressions that decide a behaviour's course, state by state."""
 
 from collections.abc import Iterable, Iterator, Mapping
 from functools import lru_cache
@@ -28,7 +28,7 @@ class ExpressionUse(NamedTuple):
 
     tree: ExpressionNode
     key: str = ""
-    """Empty if the value decides the behaviour's course."""
+    """The context key that gets the value; empty if the value decides the behaviour's course."""
 
 
 @lru_cache(maxsize=8192)

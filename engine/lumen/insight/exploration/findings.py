@@ -20,7 +20,7 @@ class PathStep:
     stimulus: Stimulus | None
     """The stimulus that led to the states; None at the beginning."""
     states: tuple[str, ...]
-    """The innermost states active after the stimulus, those of invoked behaviours (`quiz/ask`) included."""
+    """The innermost states active after the stimulus, including those of invoked behaviours (`quiz/ask`)."""
 
 
 @dataclass(frozen=True)
@@ -89,7 +89,7 @@ def _no_way_back(
 
 
 def _ahead(node: SearchNode) -> int:
-    """Return how many nodes can be reached from this one, itself included."""
+    """Return the number of nodes that can be reached from `node`, including itself."""
     found, ahead = {node}, [node]
     while ahead:
         fresh = [successor for successor in ahead.pop().successors if successor not in found]

@@ -25,7 +25,7 @@ def _uses(machine: MachineDefinition, history: State) -> frozenset[str]:
 
 
 def _led_to(machine: MachineDefinition, state: State, home: str) -> Iterator[str]:
-    """Yield the paths that transitions of a state may enter without entering `home`."""
+    """Yield the paths that a state's transitions can enter without entering `home`."""
     for transition in state.transitions:
         for target in transition.targets:
             kind = machine.states[target].kind

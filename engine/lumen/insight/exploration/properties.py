@@ -21,7 +21,7 @@ from lumen.statechart.nesting import innermost_names
 from lumen.statechart.property_monitor import holds
 
 MAX_QUIET_STEPS = 2_000
-"""The greatest number of steps that are examined from one configuration on."""
+"""The maximum number of steps that are examined from one configuration on."""
 
 
 class QuietRun(NamedTuple):

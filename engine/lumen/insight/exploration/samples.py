@@ -23,7 +23,7 @@ from lumen.language.machines import MachineDefinition
 from lumen.language.numbers import is_number
 
 MAX_FIELD_COMBINATIONS = 300
-"""The greatest number of combinations of fields that are tried."""
+"""The maximum number of combinations of fields that are tried."""
 
 SAMPLE_TEXT = "Ani"
 """A text for fields whose guards mention none."""
@@ -79,7 +79,7 @@ def example(schema: Any) -> Any:
 
 
 def _plain(schema: Any) -> list[Any]:
-    """Return a few values that fit a field's schema."""
+    """Return some plain values that fit a field's schema."""
     if not isinstance(schema, Mapping) or not schema:
         return [SAMPLE_TEXT, "", 0, True]
     if "const" in schema:

@@ -41,5 +41,5 @@ def migrate(
     now: bool = False,
     back: bool = False,
 ) -> MigrationVerdict:
-    """Return the same as `plan` for machines without a project, in which every language may be spoken."""
+    """Return the verdict of `plan` for machines without a project, in which every language is allowed."""
     return migrated(old, new, snapshot, MigrationOptions(at, now, back), new.id)

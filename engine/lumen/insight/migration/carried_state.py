@@ -186,7 +186,7 @@ def _nearest(path: str, home: StateNode, new: Chart, identity: Identity) -> Stat
 
 
 def _together(one: StateNode, other: StateNode) -> bool:
-    """Return whether two states can be active at once."""
+    """Return whether two states can be active simultaneously."""
     if one.lies_below(other) or other.lies_below(one):
         return True
     return next(a for a in one.ancestors if other.lies_below(a)).kind is StateKind.PARALLEL

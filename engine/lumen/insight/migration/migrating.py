@@ -1,4 +1,4 @@
-"""The migration of a snapshot: states that are gone are left, the rest is translated, new states are entered."""
+"""The migration of a snapshot: it leaves removed states, translates all other parts, and enters new states."""
 
 from collections.abc import Iterator
 
@@ -74,7 +74,7 @@ class _Migration:
         if not is_legal(self.new.chart, after.configuration.nodes):
             names = ", ".join(f"`{name}`" for name in sorted(after.configuration.names))
             return Refusal(f"{names} can't be active together in the new file", "restart the exhibition", "", behavior)
-        if after.configuration.finished:  # it ended before or ends now: nothing may begin any more
+        if after.configuration.finished:  # it ended before or ends now: nothing can begin any more
             after.timers, after.beginnings = (), ()
         step = complete(after)
         notes = (*self._destinations(step), *self.notes)

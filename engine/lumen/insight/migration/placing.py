@@ -54,14 +54,14 @@ class Identity:
 
 
 def _path(machine: MachineDefinition, name: str) -> str:
-    """Return the path of the state of that id; for any other name, the name itself."""
+    """Return the path of the state with the id `name`; if there is none, `name` itself."""
     if name in machine.states:
         return name
     return next((path for path, state in machine.states.items() if path and state.alias == name), name)
 
 
 def _prefixes(path: str) -> Iterator[str]:
-    """Yield a path and those of the states around it, longest first."""
+    """Yield a path and the paths of the states around it, longest first."""
     while path:
         yield path
         path = path.rpartition(".")[0]
@@ -73,9 +73,9 @@ class Placement(NamedTuple):
     kept: Mapping[StateNode, StateNode]
     """The new state for each old state that stays active."""
     left: frozenset[StateNode]
-    """Old states."""
+    """The old states that are left."""
     entered: frozenset[StateNode]
-    """New states."""
+    """The new states that are entered."""
 
 
 class Unplaced(NamedTuple):

@@ -58,11 +58,11 @@ class MigrationOptions(NamedTuple):
     at: float
     """The time of the change [s]."""
     now: bool = False
-    """Whether to cancel what is under way instead of waiting for it."""
+    """Whether to cancel each `do` under way instead of waiting for it."""
     back: bool = False
     """Whether the new bundle ran before the old one."""
     languages: Sequence[str] = ()
-    """The languages that may be spoken, the first of which replaces a removed language; any language if empty."""
+    """The allowed languages, the first of which replaces a removed language; if empty, any language is allowed."""
     is_invoked: bool = False
     """Whether another behaviour invoked this one."""
 
@@ -119,7 +119,7 @@ class Situation:
     def busy(self) -> MigrationDelay | None:
         """Return a delay for the first removed state whose `do` is under way; None if there is no such state.
 
-        Such a `do` may still lead to another state.
+        Such a `do` can still lead to another state.
         """
         gone = [node for node in self.start.ordered if node.path and self.identity.state(node.path) is None]
         return next((_gone(node) for node in gone if node.path in self.snapshot.doing), None)

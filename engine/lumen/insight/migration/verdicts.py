@@ -38,7 +38,7 @@ class MigrationPlan(NamedTuple):
 class MigrationDelay(NamedTuple):
     """A delay: the `do` of a state, or an invoked behaviour, is under way and was changed or removed.
 
-    Try again after the next step, or with `now`, which cancels what is under way.
+    Try again after the next step, or with `now`, which cancels the `do` or the behaviour.
     """
 
     reason: str

@@ -1,4 +1,4 @@
-"""A recorded visit played again with other files, to see what they would have said and done.
+"""A recorded visit played again with other files, to find the differences in speech and actions.
 
 The behaviour changes to the other files at the moment when it was last at home, as in a reload. Then it receives the
 recorded events at their times. A recorded answer goes to the new command in its place: the same command, or the next of
@@ -31,7 +31,7 @@ Duration = Callable[[Project, BodyCommand], float]
 GRACE = 120.0
 """The additional time, beyond the recorded one, that a visit may take to return home [s]."""
 MORE_STEPS, MOST_TIMES = 20_000, 10
-"""The greatest number of additional steps of a visit, and of steps per recorded input: other files may never rest."""
+"""The maximum numbers of additional steps of a visit, and of steps per recorded input: other files may never rest."""
 
 
 class VisitVerdict(NamedTuple):
@@ -42,11 +42,11 @@ class VisitVerdict(NamedTuple):
     steps: int
     """The number of steps that were taken."""
     at: float = 0.0
-    """When the first difference was, by the exhibition's clock [s]."""
+    """The time of the first difference, by the exhibition's clock [s]."""
     was: str = ""
-    """The recorded speech or action there."""
+    """The recorded speech or action at the first difference."""
     now: str = ""
-    """The new speech or action there."""
+    """The new speech or action at the first difference."""
     place: Place | None = None
     """The place in the other files of the new speech or action; None if it is unknown."""
 
@@ -143,7 +143,7 @@ class OtherPlay:
 
     @property
     def snapshot(self) -> Snapshot:
-        """The present snapshot; it exists only after the change to the other files."""
+        """The current snapshot; it exists only after the change to the other files."""
         assert self._stands is not None
         return self._stands
 

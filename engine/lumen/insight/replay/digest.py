@@ -12,9 +12,9 @@ _encode = json.JSONEncoder(sort_keys=True, separators=(",", ":"), default=lambda
 
 
 class StepDigest:
-    """The digests of steps in order; parts that a step left unchanged are not encoded again.
+    """Computes the digests of successive steps; parts that a step left unchanged are not encoded again.
 
-    The digest is the same in every process, and for a snapshot that was read from the disk.
+    The digest is equal in every process, and for a snapshot that was read from the disk.
     """
 
     def __init__(self) -> None:

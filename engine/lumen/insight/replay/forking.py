@@ -19,14 +19,14 @@ from lumen.statechart import Snapshot, Step
 ProjectSource = Callable[[str, str], Project | None]
 """A function that returns the bundle with a hash and a behaviour; None if it was not kept."""
 MAX_STEPS = 200
-"""The greatest number of recorded inputs that are followed, and of steps that are returned."""
+"""The maximum number of recorded inputs that are followed, and of steps that are returned."""
 
 
 class ForkedRun(NamedTuple):
     """A fork and the recorded course, both as entries from the fork on."""
 
     was: tuple[dict[str, Any], ...]
-    """The entries as they were recorded."""
+    """The recorded entries."""
     would: tuple[dict[str, Any], ...]
     """The entries of the fork."""
     trouble: str = ""

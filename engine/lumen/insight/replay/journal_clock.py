@@ -1,4 +1,4 @@
-"""The wall-clock time of the entries of a journal."""
+"""The wall-clock time of a journal's entries."""
 
 from collections.abc import Mapping
 from datetime import datetime, time, timedelta
@@ -9,7 +9,7 @@ from lumen.language.events import CLOCK_SET
 
 
 class JournalClock:
-    """The wall clock of a journal; `epoch` is when its time 0 was [s since 1970, in UTC]."""
+    """A journal's wall clock; `epoch` is the time at its time 0 [s since 1970, in UTC]."""
 
     def __init__(self) -> None:
         self.epoch, self._timezone = 0.0, ""

@@ -35,7 +35,7 @@ class RecordedVisit(NamedTuple):
     home: JournalJump | None = None
     """The jump before the visit, with the behaviour at home; None if the journal lacks it.
 
-    It may also be the start of a run that began elsewhere, as in a museum that is already open.
+    It can also be the start of a run that began elsewhere, as in a museum that is already open.
     """
     inputs: tuple[JournalInput, ...] = ()
     """The events from `home` on."""
@@ -85,7 +85,7 @@ class VisitWatch:
                 if entry.kind in ("start", "resume"):
                     return self.away
             case JournalInput(exited=exited, entered=entered):
-                if self._home:  # one step may leave home and enter it several times
+                if self._home:  # one step can leave home and enter it several times
                     self.away = (not self.away) + entered.count(self._home) - exited.count(self._home) < 1
         return before or self.away
 
@@ -93,7 +93,7 @@ class VisitWatch:
 def visits(entries: Iterable[tuple[RecordedEntry, MachineDefinition | None]]) -> Iterator[RecordedVisit]:
     """Yield the visits in a journal, each at its end; each entry comes with the machine that ran.
 
-    The last visit may not be `whole`.
+    The last visit can be incomplete, that is, not `whole`.
     """
     watch, number = VisitWatch(), 0
     current: RecordedVisit | None = None
