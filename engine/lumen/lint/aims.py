@@ -57,9 +57,9 @@ def _sense(controller: ControllerDefinition, output: Variable, report: DocumentR
 
 
 def _trend(controller: ControllerDefinition, variable: Variable, output: Variable) -> int:
-    """Return how `output` changes as `variable` rises, by the rules that relate their terms.
+    """Return how `output` changes as `variable` rises, according to the rules that relate their terms.
 
-    1 means that `output` rises, -1 that it falls, and 0 that this is unknown.
+    1 means that `output` rises, -1 that it falls, and 0 that its change is unknown.
     """
     asked, said = ranks(tuple(variable.terms)), ranks(tuple(output.terms))
     pairs = [

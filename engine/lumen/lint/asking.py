@@ -1,4 +1,4 @@
-"""Questions of visitors that can't be answered, because there is neither knowledge nor a module that finds answers."""
+"""Visitors' questions that can't be answered, because the project has neither knowledge nor a module for answers."""
 
 from lumen.language.actions import AskQuestion
 from lumen.language.diagnostics import WARNING, Code

@@ -65,7 +65,7 @@ def _answered(machine: MachineDefinition, state: State, event: str, others: tupl
 
 
 def _around(draft: ProjectDraft, name: str) -> Iterator[MachineDefinition]:
-    """Yield this behaviour, then those that may run with it because one invokes the other, directly or indirectly."""
+    """Yield this behaviour, then those that can run with it because either invokes the other, even indirectly."""
     invoked = {other: set(_invoked(machine)) for other, machine in draft.behaviors.items()}
     found = [name]
     for one in found:
@@ -79,7 +79,7 @@ def _invoked(machine: MachineDefinition) -> Iterator[str]:
 
 
 def together(machine: MachineDefinition, one: State, other: State) -> bool:
-    """Return whether two states can be active at once: one contains the other, or they are in different regions."""
+    """Return whether two states can be active together: either contains the other, or their regions differ."""
     around, beside = _line(machine, one), _line(machine, other)
     common = next(path for path in around if path in beside)
     return common in (one.path, other.path) or machine.states[common].kind is StateKind.PARALLEL

@@ -1,4 +1,4 @@
-"""Cached answers about the states and transitions of one machine, for all its chains, and the work done on them."""
+"""Cached answers about a machine's states and transitions, for all its chains, and a count of their work."""
 
 from collections.abc import Sequence
 
@@ -8,7 +8,7 @@ from lumen.lint.events import hears
 from lumen.lint.statecharts import within
 
 MAX_WORK = 30_000
-"""The greatest number of states that are visited for the chains of one behaviour; further chains are not followed."""
+"""The maximum number of states that are visited for a behaviour's chains; further chains are not followed."""
 
 TRANSITIONS_PER_WORK = 10
 """The number of transitions compared with an event that count as one visit."""

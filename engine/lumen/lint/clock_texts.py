@@ -20,7 +20,7 @@ _SHOWN: Mapping[str, tuple[re.Pattern[str], str]] = {
 
 
 _COUNTED: Mapping[str, int] = {"hour": 23, "minute": 59}
-"""The greatest result of each function; the least is 0."""
+"""The maximum result of each function; the minimum is 0."""
 
 _ASKED = re.compile("|".join((*_SHOWN, *_COUNTED)))
 

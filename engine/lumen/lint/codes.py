@@ -15,7 +15,7 @@ FAMILY_ORDER = (
     "text", "shape", "references", "statecharts", "reload", "expressions", "hearing", "speech", "knowledge",
     "controllers", "motions", "physics", "robot", "routes", "alerts", "fleet", "features", "comments",
 )  # fmt: skip
-"""The order of the families in lists: faults of a file's form first. A family that is not named here comes last."""
+"""The order of the families in lists: faults of a file's form first. Families that are not listed are last."""
 
 
 @cache

@@ -1,4 +1,4 @@
-"""Controllers: their bindings to joints, and further checks if nothing else is wrong with them."""
+"""Checks of controllers: their bindings to joints, and further checks if these find no fault."""
 
 from lumen.language.controllers import ControllerDefinition, OutputBinding
 from lumen.language.diagnostics import NodePath, did_you_mean
@@ -12,7 +12,7 @@ from lumen.project.poses import ANGLE_OUT_OF_RANGE, UNKNOWN_JOINT
 from lumen.project.roles import RoleNames
 
 LIMIT_TOLERANCE = 2e-3
-"""The tolerance [rad] by which a limit may exceed the joint's own, because people round."""
+"""The tolerance [rad] by which a limit can exceed the joint's limit, because people round."""
 
 
 def check(draft: ProjectDraft) -> None:

@@ -1,4 +1,4 @@
-"""Ways through a statechart: states without a way out, without a way back, and without a time limit."""
+"""Checks for states without a way out, without a way back, or without a time limit."""
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
@@ -50,7 +50,7 @@ def check(draft: ProjectDraft) -> None:
 def _ended(machine: MachineDefinition, report: DocumentReport) -> None:
     """Report transitions to the history of a parent from the state to which the parent's `done.state` leads.
 
-    Such a history remembers the final state, so the parent ends again at once.
+    Such a history remembers the final state, so the parent ends again immediately.
     """
     for path, state in machine.states.items():
         parent = machine.states[state.parent] if state.parent is not None else None
@@ -190,7 +190,7 @@ class _Ways:
         return any(t.event in TROUBLES and t.targets for state in states for t in state.transitions)
 
     def raised(self, track: State) -> set[str]:
-        """Return the events that a track raises itself."""
+        """Return the events that a track raises."""
         inside = {track.path, *self.below(track)}
         sites = (site for site in action_sites(self.machine) if site.state.path in inside)
         return {site.step.action.event for site in sites if isinstance(site.step.action, Raise)}

@@ -16,7 +16,7 @@ from lumen.project.draft import ProjectDraft
 WALK_BEYOND_GROUND = Code("walk-beyond-ground", "robot", WARNING, "a walk leads off the ground of the hall")
 
 MAX_WAYS = 2_000
-"""The greatest number of visits to states that are followed, because a behaviour may have very many routes."""
+"""The maximum number of visits to states that are followed, because a behaviour can have very many routes."""
 
 STEP = 0.02
 """The distance between the points of a walk that are checked [m]."""
@@ -30,7 +30,7 @@ class PlaceOnGround(NamedTuple):
     turned: float = 0.0
 
     def after(self, walk: Walk) -> "PlaceOnGround":
-        """Return the robot's position and turn after a walk from here."""
+        """Return the robot's position and turn after a walk from this position."""
         c, s = cos(self.turned), sin(self.turned)
         return PlaceOnGround(
             self.x + walk.x * c - walk.y * s, self.y + walk.x * s + walk.y * c, self.turned + walk.theta
@@ -38,7 +38,7 @@ class PlaceOnGround(NamedTuple):
 
 
 class Stray(NamedTuple):
-    """A walk, and the first point of it that has no ground."""
+    """A walk, and its first point that has no ground."""
 
     where: NodePath
     point: GroundPoint

@@ -18,7 +18,7 @@ MAX_STEPS_TO_REST = 20
 """The number of steps within which a state must come to rest after its entry; otherwise it counts as left."""
 
 MAX_SHOWN_TRANSITIONS = 6
-"""The greatest number of transitions of a chain that its message names."""
+"""The maximum number of a chain's transitions that its message names."""
 
 
 def check(draft: ProjectDraft) -> None:
@@ -70,7 +70,7 @@ def _stays(survey: ChainSurvey, state: State) -> bool:
     try:
         chain.stand_around(state.path)
         if any(map(survey.is_left_at_once, chain.active)):
-            return False  # an ancestor is left at once
+            return False  # an ancestor is left immediately
         chain.enter((state.path,), state.parent)
         for _ in range(MAX_STEPS_TO_REST):
             if not chain.step():

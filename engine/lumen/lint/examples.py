@@ -20,7 +20,7 @@ NEVER_HEARD = Code("never-heard", "hearing", WARNING, "a row of `hears` never ma
 SHADOWED_PHRASE = Code("shadowed-phrase", "hearing", WARNING, "a phrase matches a different row instead of its own")
 
 MAX_TRIED = 300
-"""The greatest number of sentences that are tried in search of one that matches a row with `not` or `asked`."""
+"""The maximum number of sentences that are tried to match a row with `not` or `asked`."""
 
 
 def check(draft: ProjectDraft) -> None:

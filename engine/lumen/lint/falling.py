@@ -26,7 +26,7 @@ def check(draft: ProjectDraft) -> None:
     if any(hears(d, FALLEN) for machine in draft.behaviors.values() for d in descriptors(machine)):
         return
     if draft.names.get("behaviors", frozenset()) > draft.behaviors.keys():
-        return  # a behaviour that could not be read may wait for it
+        return  # an unreadable behaviour may wait for a fall
     for name, machine in draft.behaviors.items():
         report = draft.report("behaviors", name)
         first = next((site.step for site in action_sites(machine) if _legs(draft, site.step)), None)
@@ -53,7 +53,7 @@ def _walks(machine: MachineDefinition, report: DocumentReport) -> None:
 
 
 def _leads_on(transition: Transition) -> bool:
-    """Return whether a transition with a target is taken after an error, after some time, or at once."""
+    """Return whether a transition with a target is taken after an error, after some time, or immediately."""
     event = transition.event
     after_error = not event or event == "*" or event.startswith("error")
     return bool(transition.targets) and (transition.delay is not None or after_error)

@@ -27,7 +27,7 @@ SHADOWED_TRANSITION = Code(
 )
 
 MAX_COMPARED_CANDIDATES = 60
-"""The greatest number of candidates of a state that are compared with one another; later ones are not checked."""
+"""The maximum number of a state's candidates that are compared with one another; later ones are not checked."""
 
 
 class HeardCall(NamedTuple):

@@ -61,7 +61,7 @@ class _Questions(HeardRows):
             yield from written_phrases(self.draft.report(KNOWLEDGE_FOLDER, name), ("questions",))
 
     def active_with(self, state: State) -> list[str]:
-        """Return the states with rows that may be active together with this state.
+        """Return the states with rows that can be active together with this state.
 
         Their rows are tried before the `else` of this state.
         """

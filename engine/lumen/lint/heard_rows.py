@@ -22,7 +22,7 @@ from lumen.talk.hearing import RowOrder, Taken, hearing_of
 from lumen.talk.sample_sentences import of_phrase
 
 MAX_EXAMPLES = 5_000
-"""The greatest number of sentences that are tried for a row, because a file may have very many phrases."""
+"""The maximum number of sentences that are tried for a row, because a file can have very many phrases."""
 
 
 class SaidRow(NamedTuple):
@@ -33,7 +33,7 @@ class SaidRow(NamedTuple):
 
     @property
     def hears(self) -> Hears:
-        """The row itself, as each of its candidates has it."""
+        """The row itself, from its first candidate; all candidates have the same."""
         found = self.candidates[0].hears
         assert found is not None  # they are candidates of a row
         return found

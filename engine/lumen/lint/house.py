@@ -11,7 +11,7 @@ CLASHING_NAMES = Code("clashing-names", "robot", ERROR, "two robots of a house w
 SAME_PLACE = Code("same-place", "robot", WARNING, "two robots start too close to each other")
 
 ROOM = 0.5
-"""The least distance between two robots [m], so that their arms do not touch."""
+"""The minimum distance between two robots at which their arms do not touch [m]."""
 
 
 def check(draft: ProjectDraft) -> None:

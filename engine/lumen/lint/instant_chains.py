@@ -24,7 +24,7 @@ from lumen.lint.logic import tree
 from lumen.lint.statecharts import within
 
 MAX_STEPS = 1000
-"""The greatest number of events and transitions of a chain that are followed, as in the engine."""
+"""The maximum number of a chain's events and transitions that are followed, as in the engine."""
 
 STATES_PER_WORK = 10
 """The number of states, regions or actions looked at that count as one visit."""
@@ -33,7 +33,7 @@ EVENTS_PER_WORK = 100
 """The number of waiting events copied that count as one visit."""
 
 MAX_INVOKED = 4
-"""The greatest depth to which invoked behaviours are followed."""
+"""The maximum depth to which invoked behaviours are followed."""
 
 _INSTANT = (Assign, CancelSend, If, LogText, Parallel, PublishBody, Raise, Send, Wait)
 
@@ -46,7 +46,7 @@ TakenTransition = tuple[Transition, str]
 class InstantChain:
     """The course of a machine while no time passes, followed as long as each next transition is certain.
 
-    Each method may raise UncertainError.
+    Each method can raise UncertainError.
     """
 
     survey: ChainSurvey
@@ -58,7 +58,7 @@ class InstantChain:
     begun: set[str] = field(default_factory=set)
     """The paths of the states whose `do` and `invoke` have begun."""
     unknown: set[str] = field(default_factory=set)
-    """Regions parallel to the active states in which any state may be active."""
+    """Regions parallel to the active states, whose own active states are unknown."""
     internal: tuple[str, ...] = ()
     """The raised events that wait to be processed."""
     timers: list[Transition | str] = field(default_factory=list)
@@ -238,7 +238,7 @@ class InstantChain:
     def selected(self, event: str) -> list[Transition]:
         """Return for each innermost active state the first transition that the event selects.
 
-        It may belong to the state or to an ancestor.
+        It can belong to the state or to an ancestor.
         """
         states, found, asked = self.machine.states, list[Transition](), set[str]()
         self.survey.spend(len(self.unknown) // STATES_PER_WORK)
@@ -365,5 +365,5 @@ def _ends(machine: MachineDefinition, depth: int, ends: dict[tuple[int, int], bo
 
 
 def _is_instant(step: PlacedAction) -> bool:
-    """Return whether an action of a `do` ends at once."""
+    """Return whether an action of a `do` ends immediately."""
     return isinstance(step.action, _INSTANT) and (not isinstance(step.action, Wait) or step.action.seconds == 0)

@@ -16,7 +16,7 @@ LONG_ANSWER = Code("long-answer", "knowledge", WARNING, "an answer is too long f
 UNKNOWN_ROBOT = Code("unknown-robot", "references", ERROR, "a name refers to a robot that is not in lumen.yaml")
 
 MAX_ANSWER = 400
-"""The greatest number of characters that a robot should say at once: about half a minute of speech."""
+"""The maximum length of an answer [characters]: about half a minute of speech."""
 
 
 def check(draft: ProjectDraft) -> None:

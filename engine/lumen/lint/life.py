@@ -1,4 +1,4 @@
-"""Styles of life: the states that name one, and the demands of each style on the robot's joints."""
+"""Checks of styles of life: the styles that states name, and each style's demands on the robot's joints."""
 
 from collections.abc import Iterator
 
@@ -18,7 +18,7 @@ POSTURE = "Stand"
 """The posture around which the style moves."""
 
 MAX_LEG_SWAY = 0.05
-"""The greatest sway of a leg joint [rad] at which the weight stays over the soles, however the other joints move."""
+"""The maximum sway of a leg joint [rad] that keeps the weight over the soles in all poses of the other joints."""
 
 _Fault = tuple[Code, NodePath, str, str]
 

@@ -15,19 +15,19 @@ from lumen.expressions.tree import Binary, ExpressionNode, FunctionCall, ListLit
 from lumen.language.numbers import is_number
 
 MAX_ALTERNATIVES = 24
-"""The greatest number of alternatives of a condition; if it has more, nothing is concluded."""
+"""The maximum number of alternatives of a condition; if it has more, nothing is concluded."""
 
 _OPPOSITE = {"<": ">=", ">=": "<", ">": "<=", "<=": ">", "==": "!=", "!=": "=="}
 _TURNED = {"<": ">", ">": "<", "<=": ">=", ">=": "<=", "==": "==", "!=": "!="}
 _COUNTS = {"hour": (0, 23), "minute": (0, 59), "size": (0, inf)}
-"""Functions that return whole numbers, each with its least and greatest result."""
+"""Functions that return whole numbers, each with its minimum and maximum result."""
 
 
 class Claim(NamedTuple):
     """A claim about a value."""
 
     subject: str
-    """The value, as the expression writes it."""
+    """The value, as written in the expression."""
     sign: str
     """A comparison with `value`, or `is`."""
     value: object
@@ -43,7 +43,7 @@ def tree(source: str) -> ExpressionNode:
 
 
 def never(*conditions: ExpressionNode) -> bool:
-    """Return whether conditions certainly can't all be true at once; False if that is unknown."""
+    """Return whether conditions certainly can't all be true together; False if that is unknown."""
     spread = [_alternatives(condition, True) for condition in conditions]
     if any(s is None for s in spread):
         return False

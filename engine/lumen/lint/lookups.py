@@ -1,4 +1,4 @@
-"""Lookup of names of files for the rules, and of paths in a document."""
+"""Looks up file names for the rules, and paths in a document."""
 
 from collections.abc import Mapping
 
@@ -38,7 +38,7 @@ _FOLDERS: Mapping[str, tuple[str, str, Code]] = {
     "model": ("models", "robot", UNKNOWN_MODEL),
     "message": ("schemas/messages", "message schema", UNKNOWN_MESSAGE),
 }
-"""For each kind of file its folder, its name in messages, and the code of an unknown name."""
+"""For each kind of file: its folder, its name in messages, and the code for an unknown name."""
 
 
 class References:

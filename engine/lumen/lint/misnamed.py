@@ -1,4 +1,4 @@
-"""Files in the project's folders that are not read because of their names, or those of their folders."""
+"""Files in the project's folders that are not read because of their names or their folders' names."""
 
 from dataclasses import replace
 

@@ -6,9 +6,9 @@ from typing import NamedTuple
 from xml.parsers import expat
 
 MAX_ELEMENT_DEPTH = 100
-"""The greatest number of nested levels: MuJoCo's parser recurses at each."""
+"""The maximum number of nested levels: MuJoCo's parser recurses at each level."""
 MAX_ELEMENTS = 20_000
-"""The greatest number of elements of a file, and of repetitions of one element."""
+"""The maximum number of elements of a file, and of repetitions of an element."""
 
 _BOUNDS: Mapping[str, tuple[tuple[tuple[str, ...], float], ...]] = {
     "replicate": ((("count",), MAX_ELEMENTS),),

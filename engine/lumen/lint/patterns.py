@@ -24,12 +24,12 @@ _SIGNS = re.compile(r"[()\[\]{}|<>/\\*^$@%,;\n]")
 
 _PATTERN_SIGNS = re.compile(r"[()\[\]{}|]")
 _MIN_PARTS = 3
-"""The least number of parts between commas that count as alternatives; fewer may be a sentence."""
+"""The minimum number of parts between commas that count as alternatives; fewer parts can be a sentence."""
 _SAME_BEGINNING = 3
 """The number of equal first letters from which two words count as forms of one word: "dance, dancing"."""
 
 _MAX_TORN = 10
-"""The greatest number of phrases before and after a phrase that are searched for the rest of a torn pattern."""
+"""The maximum number of phrases before and after a phrase that are searched for the rest of a torn pattern."""
 
 _FOREIGN: tuple[tuple[re.Pattern[str], str, str], ...] = (
     (

@@ -15,10 +15,10 @@ ProjectFiles = Mapping[str, bytes]
 FileLinter = Callable[[ProjectFiles], Sequence[Diagnostic]]
 
 _HIDING = frozenset((TAB, YAML_SYNTAX, DUPLICATE_KEY))
-"""Faults that hide the rest of a file, so that their repair may reveal more findings."""
+"""Faults that hide the rest of a file; their repair can reveal more findings."""
 
 MAX_REPAIR_ROUNDS = 100
-"""The greatest number of rounds, because a repair may reveal further findings.
+"""The maximum number of rounds, because a repair can reveal further findings.
 
 Of several findings with one cause only the first is reported.
 """

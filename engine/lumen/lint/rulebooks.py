@@ -35,7 +35,7 @@ UNUSED_TERM = Code("unused-term", "controllers", WARNING, "no rule uses a term")
 
 MAX_SHOWN_CASES = 3
 MAX_COMPARISONS = 10_000
-"""The greatest number of pairs of rules that are compared, and of cells of a table that are searched."""
+"""The maximum number of pairs of rules that are compared, and of table cells that are searched."""
 
 
 def check(controller: ControllerDefinition, report: DocumentReport) -> None:

@@ -41,7 +41,7 @@ MIN_TEXTS_FOR_LANGUAGE = 4
 """The number of texts from which a language without texts is reported once, rather than for each text."""
 
 MAX_COMPARED_ROWS = 200
-"""The greatest number of rows of an answers table that are compared with one another; later ones are not checked."""
+"""The maximum number of an answers table's rows that are compared with one another; later ones are not checked."""
 
 
 def check(draft: ProjectDraft) -> None:

@@ -15,10 +15,10 @@ UNREACHABLE_STATE = Code("unreachable-state", "statecharts", WARNING, "no transi
 
 
 MAX_ALWAYS_LOOP = 3
-"""The greatest number of transitions in a loop of guarded `always` that is searched for."""
+"""The maximum number of transitions in a loop of guarded `always` that is searched for."""
 
 MAX_FOLLOWED_ALWAYS = 4
-"""The greatest number of guarded `always` of one state that are followed."""
+"""The maximum number of a state's guarded `always` that are followed."""
 
 _LEADS = frozenset(("on", "hears", "always", "after", "at", "onDone", "onError", "onReload", "target", "initial"))
 """Keys whose values name states; an unreadable value of such a key may have named any state."""

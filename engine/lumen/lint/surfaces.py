@@ -32,7 +32,7 @@ RESOLUTION_FACTOR = 4
 """The factor by which the resolution is raised to estimate the error of the original resolution."""
 
 CORNERS = 5, 400
-"""The greatest number of points in each input's range, and of their combinations."""
+"""The maximum number of points in each input's range, and of their combinations."""
 
 
 class SurfaceSamples(NamedTuple):

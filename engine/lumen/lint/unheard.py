@@ -53,7 +53,7 @@ def _unheard(rows: HeardRows, row: SaidRow) -> None:
 
 
 def _quoted(transition: Transition) -> Iterator[str]:
-    """Yield the texts in a guard under `on`, which may be names of phrases."""
+    """Yield the texts in a guard under `on` that can be names of phrases."""
     if transition.guard and not transition.hears:
         nodes = (node for node, _ in walk(tree(transition.guard.source)))
         yield from (node.value for node in nodes if isinstance(node, Literal) and isinstance(node.value, str))

@@ -1,4 +1,4 @@
-"""The uniform-cost search through everything that can happen: the likeliest paths first."""
+"""The uniform-cost search through all possible stimuli: the likeliest paths first."""
 
 from collections.abc import Iterator, Mapping
 from heapq import heappop, heappush
@@ -176,7 +176,7 @@ def still(
 def reaching(nodes: list[SearchNode], goals: set[SearchNode], *, inside: bool = False) -> set[SearchNode]:
     """Return the nodes from which one of the goals can be reached.
 
-    With `inside`, only paths count on which the active states stay the same.
+    With `inside`, only paths with unchanged active states count.
     """
     before: dict[SearchNode, list[SearchNode]] = {}
     for node in nodes:

@@ -43,13 +43,13 @@ STIMULUS_COSTS: Mapping[StimulusKind, int] = {
     StimulusKind.TIME: 2,
     StimulusKind.FAILED: 7,
 }
-"""The cost of a stimulus on the path to the shortest story: a robot that does what it should costs nothing."""
+"""The cost of a stimulus on the path to the shortest story: a command that the robot completes costs nothing."""
 
 OVERTAKING_COST = 5
 """The extra cost if a timer ends during a command, or before a timer that is due earlier."""
 
 MAX_SAID = 20
-"""The greatest number of sentences that are tried for a row of `hears`."""
+"""The maximum number of sentences that are tried for a row of `hears`."""
 
 
 class Stimulus(NamedTuple):
@@ -75,7 +75,7 @@ class Stimulus(NamedTuple):
 
 
 class HeardTransition(NamedTuple):
-    """A transition that an event may select, with its machine and that machine's context."""
+    """A transition that an event can select, with its machine and the machine's context."""
 
     machine: MachineDefinition
     transition: Transition
@@ -164,7 +164,7 @@ def _uses(heard: HeardTransition) -> Iterator[ExpressionUse]:
 
 
 def loop_keys(machine: MachineDefinition) -> frozenset[str]:
-    """Return the context keys that hold the entry of a `for`; they are found once and kept on the definition."""
+    """Return the context keys for the entries of `for`; they are cached on the definition."""
     found: frozenset[str] | None = machine.__dict__.get("_loop_keys")
     if found is None:
         found = frozenset(state.for_each.key for state in machine.states.values() if state.for_each)
@@ -180,7 +180,7 @@ def _arrival(command: BodyCommand | None, snapshot: Snapshot) -> Event | None:
 
 
 def _heard(machine: CompiledMachine, snapshot: Snapshot, name: str) -> Iterator[HeardTransition]:
-    """Yield the transitions that an event of that name may select, here or in invoked behaviours."""
+    """Yield the transitions that an event of that name can select in this behaviour or invoked ones."""
     for transition in machine.planner.configuration(snapshot.configuration).candidates(name).all:
         yield HeardTransition(machine.chart.definition, transition.definition, snapshot.context)
     for id, child in snapshot.invoked.items():
@@ -217,7 +217,7 @@ def _orders(heard: tuple[HeardTransition, ...], name: str, data: Any) -> Iterato
 
 
 def _extremes(schema: Mapping[str, Any]) -> Iterator[Any]:
-    """Yield the least and the greatest data that a controller can send."""
+    """Yield the minimum and the maximum data that a controller can send."""
     for end in ("minimum", "maximum"):
         yield {key: value[end] for key, value in schema["properties"].items() if end in value}
 
@@ -264,7 +264,7 @@ def _sort(heard: HeardTransition, source: str, name: str, data: Any) -> str:
 
 
 def _next(snapshot: Snapshot) -> Iterator[Timer]:
-    """Yield the timers that may be the next to end.
+    """Yield the timers that can end next.
 
     It is unknown how long ago an unrelated state was entered; but among the timers of a state and the states around it,
     a shorter delay ends before a longer one.
