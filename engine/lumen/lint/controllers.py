@@ -1,4 +1,4 @@
-"""Checks of controllers: their bindings to joints, and further checks if these find no fault."""
+"""Checks of controllers: their bindings to joints, and further checks of files without faults."""
 
 from lumen.language.controllers import ControllerDefinition, OutputBinding
 from lumen.language.diagnostics import NodePath, did_you_mean

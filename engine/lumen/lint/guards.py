@@ -158,7 +158,7 @@ def _takes_all(earlier: Transition, later: Transition, machine: MachineDefinitio
     """Report a transition that an earlier one makes partly or wholly unreachable; return True if it is wholly so."""
     related = [(earlier.where, "the earlier one is here")]
     if earlier.guard is None:
-        if report.broken(earlier.where):  # the part that could not be read may have been its guard
+        if report.broken(earlier.where):  # the unreadable part may have been its guard
             return False
         line = report.document.place(earlier.where).line
         message = f"this transition is never taken: the one on line {line} is always taken first"

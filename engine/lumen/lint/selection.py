@@ -8,7 +8,7 @@ from lumen.lint.codes import codes, families
 
 
 def selected(words: Iterable[str]) -> frozenset[str]:
-    """Return the codes that these words select; a word may contain several codes, separated by commas.
+    """Return the codes that these words select; a word can contain several codes, separated by commas.
 
     `unknown` selects every code that begins with `unknown-`. Raises UsageError for a word that selects no code.
     """

@@ -1,4 +1,4 @@
-"""Findings of several robots, combined."""
+"""Combines the findings of several robots."""
 
 from collections.abc import Sequence
 
@@ -9,7 +9,7 @@ NEEDED_ONCE = ("unused-", "idle-", "silent-", "unreachable-")
 
 
 def together(views: Sequence[Sequence[Diagnostic]]) -> tuple[Diagnostic, ...]:
-    """Return the findings of all robots, each once, sorted; those about unused parts only if all robots have them."""
+    """Return the findings of all robots, each once, sorted; findings in NEEDED_ONCE only if all robots have them."""
     counted: dict[Diagnostic, int] = {}
     for view in views:
         for diagnostic in dict.fromkeys(view):

@@ -62,7 +62,7 @@ def _order(variable: Variable, rows: list[SampledTerm], xs: list[float], report:
 
 
 def _top(degrees: list[float], xs: list[float]) -> float:
-    """Return the middle of the points `xs` at which a term has its greatest membership."""
+    """Return the middle of the points `xs` at which a term has its maximum membership."""
     most = max(degrees)
     tops = [x for x, degree in zip(xs, degrees, strict=True) if degree >= most - 1e-9]
     return sum(tops) / len(tops)
@@ -92,7 +92,7 @@ def _gaps(variable: Variable, rows: list[SampledTerm], xs: list[float], report: 
 
 
 def _narrow(rows: list[SampledTerm]) -> bool:
-    """Return whether a term is so narrow that it may lie between two points of the grid."""
+    """Return whether a term is so narrow that it can be between two points of the grid."""
     return any(sum(degree > MIN_MEMBERSHIP for degree in degrees) < 2 for _, degrees in rows)
 
 

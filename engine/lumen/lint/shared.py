@@ -1,4 +1,4 @@
-"""Values that robots share: which behaviour may assign them, and whether their name is free."""
+"""Checks of values that robots share: which behaviour can assign them, and whether their names are free."""
 
 from collections.abc import Iterator
 

@@ -1,4 +1,4 @@
-"""Controllers that move no joint: the fields, context keys and events that their inputs and outputs are bound to."""
+"""Bindings of controllers to fields, context keys and events instead of joints."""
 
 import re
 from collections.abc import Mapping, Sequence
@@ -247,7 +247,7 @@ def _never_off(draft: ProjectDraft) -> set[str]:
 
 
 def _target(signal: SignalBinding) -> str:
-    """Return the target of a signal in words; empty for an event, because several signals may raise the same event.
+    """Return the target of a signal in words; empty for an event, because several signals can raise the same event.
 
     Messages with different constants count as different targets.
     """

@@ -30,7 +30,7 @@ def check(draft: ProjectDraft) -> None:
     for name, motion in draft.motions.items():
         for cue in motion.cues:
             begun = skill_of(cue.kind, cue.value)
-            own = begun and cue.where[-1:] == (begun.skill,)  # not that of another motion that it plays
+            own = begun and cue.where[-1:] == (begun.skill,)  # not a skill of another motion that this motion plays
             row = draft.verbs.rows.get(begun.skill) if begun else None
             if begun and own and (lack := lack_of(replace(begun, row=row), body)):
                 message = f"{lack.message}, so it leaves out `{begun.skill}`"

@@ -38,7 +38,7 @@ def check(draft: ProjectDraft) -> None:
 
 
 def within(path: str, other: str) -> bool:
-    """Return whether a state is the other one, or a descendant of it."""
+    """Return whether `path` is the state `other`, or its descendant."""
     return path == other or not other or path.startswith(f"{other}.")
 
 

@@ -1,4 +1,4 @@
-"""Stories: names of states, context keys, sensors, events and routes that they use."""
+"""Checks of stories: the states, context keys, sensors, events and routes that they name."""
 
 import json
 from collections.abc import Mapping

@@ -45,11 +45,11 @@ class SurfaceSamples(NamedTuple):
     neutral_inputs: dict[str, float]
     """The outputs by name if all inputs are neutral."""
     reach: dict[str, tuple[float, float]]
-    """The least and the greatest value of each output."""
+    """The minimum and the maximum of each output."""
     silent: dict[str, dict[str, float]]
     """For each output that is undefined for some inputs, the first such inputs."""
     off: dict[str, float]
-    """For each output with an `accuracy`, the greatest difference from its value at a finer resolution."""
+    """For each output with an `accuracy`, the maximum difference from its value at a finer resolution."""
 
 
 def sample_surface(controller: ControllerDefinition) -> SurfaceSamples:
@@ -101,9 +101,9 @@ def _all(
 
 
 def _off(controller: ControllerDefinition, slices: list[Slice]) -> dict[str, float]:
-    """Return the greatest error of each output with an `accuracy`.
+    """Return the maximum error of each output with an `accuracy`.
 
-    It is the difference from the value with RESOLUTION_FACTOR times the resolution.
+    The error is the difference from the value with RESOLUTION_FACTOR times the resolution.
     """
     exact = {
         n: v for n, v in controller.outputs.items() if v.accuracy is not None and v.defuzzifier in INTEGRAL_DEFUZZIFIERS

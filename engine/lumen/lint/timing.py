@@ -48,7 +48,7 @@ def _cut(
 
 
 def duration(block: Iterable[PlacedAction], motions: Mapping[str, MotionDefinition]) -> float:
-    """Return the least duration of these actions in sequence [s]; among alternative texts, the longest counts.
+    """Return the minimum duration of these actions in sequence [s]; among alternative texts, the longest counts.
 
     Unknown durations, such as of an expression's text or of a walk's turn, count as 0.
     """
@@ -79,7 +79,7 @@ def _one(step: PlacedAction, motions: Mapping[str, MotionDefinition]) -> float:
 
 
 def _taken(command: Do) -> float:
-    with suppress(BadCommandError):  # an argument that only a running step can fill in
+    with suppress(BadCommandError):  # only a running step can compute the argument
         return time_taken(command)
     return 0.0
 

@@ -89,7 +89,8 @@ def _mapped(report: DocumentReport) -> None:
 def _parts(texts: list[str], lines: list[int]) -> Iterator[tuple[int, int]]:
     """Yield the first index and the end index of each text that a comma has split; `lines` are the texts' lines.
 
-    Each part but the last has no final mark, and each but the first begins with a lowercase letter on the same line.
+    Every part except the last lacks a final mark; every part except the first begins with a lowercase letter on the
+    same line.
     """
     first = 0
     for i in range(1, len(texts) + 1):

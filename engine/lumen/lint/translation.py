@@ -38,7 +38,7 @@ class Untranslated(NamedTuple):
 
 
 def language_entries(draft: ProjectDraft) -> list[LanguageEntry]:
-    """Return all values by language of a project, each once; values that apply to every language are left out."""
+    """Return a project's values by language, each once; values that apply to every language are left out."""
     found = {(report.document.file, path): report for report, path in _places(draft)}
     entries = []
     for (_, path), report in found.items():

@@ -1,4 +1,4 @@
-"""Test questions for passages: those for an unknown passage, and those whose words another question already has."""
+"""Checks test questions for passages: unknown passages, and questions with the words of an earlier question."""
 
 from collections.abc import Iterator, Mapping
 from typing import NamedTuple
@@ -46,7 +46,7 @@ def check(draft: ProjectDraft) -> None:
 
 
 def _known(draft: ProjectDraft) -> Iterator[tuple[_Text, Place]]:
-    """Yield the questions of the passages."""
+    """Yield the passages' questions, each with its place."""
     for name, passage in draft.knowledge.items():
         report = draft.report(KNOWLEDGE_FOLDER, name)
         for text in _texts(("questions",), passage.questions):

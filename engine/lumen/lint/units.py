@@ -21,7 +21,7 @@ MAX_WALK_DISTANCE = 20.0
 """The longest plausible walk in a hall without a `stage` [m]."""
 
 SPEED_TOLERANCE = 1.05
-"""The factor by which a speed may exceed the limit, because people round."""
+"""The factor by which a speed can exceed the limit, because people round."""
 
 HALF_TURN_PARTS = frozenset(round(pi / n, digits) for n in (1, 2, 3, 4, 6) for digits in (2, 3, 4))
 """Fractions of a half turn as people write them in radians."""

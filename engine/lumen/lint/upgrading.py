@@ -36,8 +36,8 @@ def upgraded(
 ) -> tuple[dict[str, bytes], list[Rewriting]]:
     """Return the files of a project in `vocabulary`, and the rewritten places, as they were before.
 
-    lumen.yaml then has the new number. Raises UsageError if a file can't be read, if the files are of a newer
-    vocabulary, or if the old and the new word for the same thing are both in use.
+    lumen.yaml then has the new number. Raises UsageError if a file can't be read, if the files have a newer vocabulary,
+    or if they use both the old and the new form of a word.
     """
     now, done = dict(files), list[Rewriting]()
     said = _said(_document(now, MAIN_FILE))
@@ -61,7 +61,7 @@ def upgraded(
 def renamed_key(files: str, path: Sequence[str], name: str) -> Migration:
     """Return a migration that renames a key in the files that match the pattern `files`, at every matching path.
 
-    A `*` in `path` matches any one step. The migration raises UsageError if a map has both the old and the new key.
+    A `*` in `path` matches any single step. The migration raises UsageError if a map has both the old and the new key.
     """
 
     def migrate(document: Document) -> Iterator[Rewriting]:
