@@ -105,7 +105,7 @@ class _Reader:
 
 
 def _too_many(name: str, attributes: Mapping[str, str]) -> str:
-    """Return in words the attributes whose product exceeds the limit of the element; empty if there are none."""
+    """Return in words the attributes whose product exceeds the element's limit; empty if there are none."""
     for keys, most in _BOUNDS.get(name, ()):
         words = (word for key in keys for word in attributes.get(key, "").split())
         if (product := prod(abs(_number(word)) or 1.0 for word in words)) > most:

@@ -1,4 +1,4 @@
-"""Names that a behaviour uses: keys of the context, lists, and texts that may name phrases."""
+"""Names that a behaviour uses: keys of the context, lists, and texts that can name phrases."""
 
 from collections.abc import Iterator, Mapping
 from typing import NamedTuple

@@ -1,4 +1,4 @@
-"""A further language for a project: an entry for it in every text and phrase."""
+"""Adds a language to a project: an entry in every text and phrase."""
 
 import json
 from collections.abc import Mapping
