@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from websockets.sync.client import ClientConnection
 
 SILENCE = 1.0
-"""The time without joints after which the robot is lost [s]; the daemon sends 40 to 50 a second, none when restarted."""
+"""The time without joints after which the robot is lost [s]: usually 40 to 50 arrive a second, none after a restart."""
 SECOND_LOOK = 0.25
 """The least time that Lumen waits for a message [s], even after SILENCE, because this process may have been busy."""
 OPEN_PATIENCE = 5.0
