@@ -129,7 +129,7 @@ def _on_stage(main: DocumentReport, name: str, place: HallPlace, stage: Stage) -
 
 
 def _apart(main: DocumentReport, places: Iterable[tuple[str, HallPlace]]) -> None:
-    """Report pairs of places so close that the robot may be at both."""
+    """Report pairs of places so close that the robot can be at both."""
     for (one, a), (other, b) in combinations(places, 2):
         apart = hypot(a.x - b.x, a.y - b.y)
         if apart < a.within + b.within - 1e-9:

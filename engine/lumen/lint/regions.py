@@ -14,7 +14,7 @@ CROSSES_REGIONS = Code(
 )  # fmt: skip
 
 MAX_SHOWN_REGIONS = 6
-"""The greatest number of regions that the hint names."""
+"""The maximum number of regions that the hint names."""
 
 
 def check(draft: ProjectDraft) -> None:

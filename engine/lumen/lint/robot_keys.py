@@ -16,7 +16,7 @@ from lumen.project.project_folders import MAIN_FILE
 from lumen.project.yaml_reader import parse
 
 NEW_KEYS: Mapping[str, str] = {alias: DEFAULT_KEYS[name] for name, alias in DEFAULT_ALIASES.items()}
-"""The present keys, by the keys of 2015 that they replace."""
+"""The current keys, by the keys of 2015 that they replace."""
 
 
 def with_robot_keys(files: Mapping[str, bytes]) -> tuple[dict[str, bytes], list[Rewriting]]:

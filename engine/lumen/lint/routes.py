@@ -82,7 +82,7 @@ def _removed(names: Collection[str], report: DocumentReport) -> None:
 
 
 def _password(bus: str, report: DocumentReport) -> None:
-    """Report credentials of the broker in lumen.yaml, because a project may be copied, mailed or published."""
+    """Report the broker's credentials in lumen.yaml, because a project can be copied, mailed or published."""
     if credentials_of(bus):
         message = "a user name and a password are in a file that others can read"
         hint = "put them into the environment variable LUMEN_BUS, or into a file that LUMEN_BUS_CREDENTIALS names"

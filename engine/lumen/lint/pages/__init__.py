@@ -32,7 +32,7 @@ class MarkedWord(NamedTuple):
     first: int
     """The first column, from 1."""
     last: int
-    """The column behind the word, from 1."""
+    """The column after the word, from 1."""
 
 
 class Example(NamedTuple):
