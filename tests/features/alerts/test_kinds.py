@@ -145,9 +145,7 @@ def test_a_part_that_gave_up(hall: Hall) -> None:
     shown = hall.whole()
     for part in shown.node.parts:
         part.helpless("the thread `lumen-x` failed 5 times, at last on what Ani said")
-    assert (
-        hall.told("crashed") == "a part of Lumen failed. The robot rests, because no one could have stopped it"
-    )
+    assert hall.told("crashed") == "a part of Lumen failed. The robot rests, because no one could have stopped it"
 
 
 def test_a_disk_that_is_full(hall: Hall, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,6 +1,7 @@
 """A recorder writes every message of a bus, delays no publisher, and reports a disk's fault once."""
 
 import errno
+import math
 import threading
 from collections.abc import Sequence
 from dataclasses import replace
@@ -151,7 +152,12 @@ def test_what_happens_is_known_from_the_bus(key: str, body: object, why: str) ->
     assert happening(said(key, body), "NAO") == why
 
 
-@pytest.mark.parametrize("message", [said("lumen.a", {"n": 2**63 - 1}), said("lumen.a", {})._replace(time=2.5e11)])
+SENT = [2.5e11, -1.0, math.inf, -math.inf, math.nan]
+
+
+@pytest.mark.parametrize(
+    "message", [said("lumen.a", {"n": 2**63 - 1}), *(said("lumen.a", {})._replace(time=sent) for sent in SENT)]
+)
 def test_what_any_sender_may_say_is_written(tmp_path: Path, message: Message) -> None:
     bus, path = MemoryBus(), tmp_path / "a.mcap"
     recorder = Recorder(bus, project(), [tape(path)])

@@ -9,6 +9,7 @@ import pytest
 from lumen.bus import connect
 from lumen.features.skills import module_call
 from lumen.ports import Bus, Message
+from lumen.project import load
 from tests.features.skills.changing import project_in
 from tests.features.skills.stage import Stage, stage
 from tests.rabbitmq import RabbitMQ
@@ -56,6 +57,14 @@ def test_a_module_waits_by_the_robots_clock(pumping: Stage) -> None:
 def test_an_error_of_a_module_is_the_reason(pumping: Stage) -> None:
     Pump(pumping.bus, {"error": "the tank is empty"})
     assert pumping.perform("pump", litres=1) == "`pump` failed: the tank is empty"
+
+
+def test_a_removed_skill_of_a_module_is_refused(pumping: Stage) -> None:
+    pump = Pump(pumping.bus, {"result": {}})
+    (pumping.root / "skills/pump.yaml").unlink()
+    pumping.workshop.use(load(pumping.root))
+    assert pumping.perform("pump", litres=1) == "the project has no skill `pump` any more"
+    assert pump.heard == []
 
 
 def test_a_module_hears_of_a_cancel(pumping: Stage) -> None:

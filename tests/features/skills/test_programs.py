@@ -189,6 +189,15 @@ def test_code_that_python_cannot_read_is_reported_once_and_the_old_code_stays(ac
     assert acting.perform("act") == {"version": 3}
 
 
+def test_each_call_of_code_that_python_cannot_read_has_the_place_of_the_error(acting: Stage) -> None:
+    code(acting, "return {'version': ")
+    for _ in range(3):
+        assert acting.perform("act") == "skills/act.py:6:12 Python can't read this: '{' was never closed"
+    assert len(acting.reported) == 1
+    code(acting, "return {'version': 2}")
+    assert acting.perform("act") == {"version": 2}
+
+
 def test_a_module_beside_the_code_counts_as_code(acting: Stage) -> None:
     acting.write("skills/pump.py", "LITRES = 1\n")
     code(acting, "import pump\nreturn {'litres': pump.LITRES}")

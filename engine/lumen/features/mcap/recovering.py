@@ -47,8 +47,8 @@ class RecordingRescue:
                 self._tell(f"{path} was cut off and has been repaired: {counted(recover(path) or 0, 'message')}")
         pieces, self._pieces = self._pieces, []
         if pieces:
-            path = kept_as(self._folder, pieces[-1].stat().st_mtime, "crashed")
-            with _telling(self._tell, path):
+            with _telling(self._tell, pieces[-1]):
+                path = kept_as(self._folder, pieces[-1].stat().st_mtime, "crashed")
                 good = [piece for piece in pieces if _readable(piece)]
                 count = rewrite(good, path, more=self._explaining(good)) if good else 0
                 for piece in pieces:

@@ -61,8 +61,10 @@ class _Bench:
     """The code that calls use; None before a program was needed."""
     seen: _Code | None = None
     """The code that was read while `code` was None."""
-    refused: tuple[tuple[str, int, int], ...] = ()
-    """The stamp of the newest code if it has a syntax error, else empty."""
+    refused: tuple[tuple[str, int, int], ...] | None = None
+    """The stamp of the newest code if it has a syntax error, else None."""
+    fault: str = ""
+    """The place and the message of that error."""
     idle: list[SkillProcess] = field(default_factory=list)
     """The processes that perform no call."""
     busy: list[SkillProcess] = field(default_factory=list)
@@ -208,16 +210,16 @@ class Workshop:
         the call is cancelled during the pause after a crash.
         """
         name = call.skill
-        match call.row.details:
-            case Skill("module", (module,)):
-                with self._counted(name), closing(ModuleCall(self.project, self.bus, module, self._answers)) as remote:
-                    yield remote
-                return
         with self._lock:
             if (bench := self._benches.get(name)) is None or self._closed:
                 raise RobotRefusedError(f"the project has no skill `{name}` any more")
             if len(bench.busy) >= MAX_PROCESSES:
                 raise RobotRefusedError(f"{MAX_PROCESSES} calls of `{name}` are under way already")
+        match call.row.details:
+            case Skill("module", (module,)):
+                with self._counted(name), closing(ModuleCall(self.project, self.bus, module, self._answers)) as remote:
+                    yield remote
+                return
         self._refresh(name, bench)
         self._pause(call, bench)
         with self._lock:
@@ -303,19 +305,19 @@ class Workshop:
         """
         skill = bench.skill
         stamp = _stamp(self._root, skill)
-        if stamp == bench.refused or (bench.code and bench.code.stamp == stamp):
+        if bench.code and stamp in (bench.refused, bench.code.stamp):
             return
+        if stamp == bench.refused:
+            raise RobotFailedError(bench.fault)
         code = _read(self._root, skill)
         if skill.kind == "python" and (fault := syntax_fault(code.source.encode(), skill.target[0])):
-            bench.refused = stamp
-            kept = "; the code before stays in use" if bench.code else ""
-            place = f"{skill.target[0]}:{fault.line}:{fault.column}"
-            self.report(name, f"{place} {fault.message}{kept}")
+            bench.refused, bench.fault = stamp, f"{skill.target[0]}:{fault.line}:{fault.column} {fault.message}"
+            self.report(name, bench.fault + ("; the code before stays in use" if bench.code else ""))
             if bench.code is None:
-                raise RobotFailedError(f"{place} {fault.message}")
+                raise RobotFailedError(bench.fault)
             return
         with self._lock:
-            bench.refused = ()
+            bench.refused = None
             changed, bench.code = bench.code is not None and bench.code.hash != code.hash, code
             if changed:
                 bench.again = 0.0

@@ -34,8 +34,11 @@ _ORIGIN_SCHEMA = {
 
 
 def nanoseconds(moment: float) -> int:
-    """Convert a time from [s] to [ns] since 1970, limited to MCAP's range because a sender can send any number."""
-    return min(max(int(moment * NANO), 0), MAX_NANOSECONDS)
+    """Convert a time from [s] to [ns] since 1970, limited to MCAP's range because a sender can send any number.
+
+    Return 0 for NaN.
+    """
+    return int(min(max(0, moment * NANO), MAX_NANOSECONDS))
 
 
 class MessageEncoder:
