@@ -35,7 +35,7 @@ WHATS: Mapping[str, str] = {
     "status": "show the houses, the robots and the rollout",
     "pause": "pause the rollout",
     "go": "continue a rollout that is paused, or that waits because its result is unknown",
-    "abort": "abort the rollout, and roll all robots back",
+    "abort": "abort the rollout, and roll its robots back",
     "pin": "leave a robot out of rollouts",
     "unpin": "let a robot join rollouts again",
     "diff": "list what a bundle would change",
@@ -57,7 +57,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("--first", metavar="TO", help="rollout: the first step: a group, a share such as 10%%, or all")
     add("--then", metavar="TO", action="append", default=[], help="rollout: the next step; may be repeated")
     add("--pause", metavar="30min", help="rollout: how long each step is watched")
-    add("--abort-if", metavar="TEXT", help="rollout: roll all robots back if this condition holds (see fleet.yaml)")
+    add("--abort-if", metavar="TEXT", help="rollout: roll its robots back if this condition holds (see fleet.yaml)")
     add(
         "--try",
         dest="try_first",

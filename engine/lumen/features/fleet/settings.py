@@ -68,7 +68,7 @@ class RolloutPlan:
     pause: float = DEFAULT_PAUSE
     """The time for which each step is watched [s]."""
     abort_if: str = ""
-    """The condition that rolls all robots back; empty for none."""
+    """The condition that rolls the robots of a rollout back; empty for none."""
     try_first: bool = False
     """Whether all robots try the bundle before the first robot switches to it."""
 
