@@ -1,4 +1,4 @@
-"""Recordings of the messages of an exhibition."""
+"""The feature that records an exhibition's messages."""
 
 from lumen.feature import Feature, PartRow, Phase, Section, Subcommand
 

@@ -37,7 +37,7 @@ from lumen.run.reaching import Reached
 from lumen.run.snapshot_store import SnapshotStore
 
 LOOK = 0.1
-"""The time between two checks whether to stop [s]."""
+"""The time between two checks of whether to stop [s]."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -66,7 +66,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Record, repair a file or set a mark; return the exit code, 0 on success.
+    """Record, repair a file or mark this moment; return the exit code, 0 on success.
 
     Raises UsageError if an option is invalid or the file can't be written, RecordingError if it can't be repaired.
     """

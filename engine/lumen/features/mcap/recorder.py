@@ -43,7 +43,7 @@ class RecordingTape(Protocol):
     def write(self, items: Sequence[Recorded], now: float) -> None: ...
 
     def mark(self, why: str, now: float) -> None:
-        """Keep what happened around this moment."""
+        """Keep the recording around this moment, for the reason `why`."""
         ...
 
     def settle(self, now: float) -> None:
@@ -206,7 +206,7 @@ class Recorder:
 
 
 def _patterns(project: Project, camera: bool) -> Sequence[str]:
-    """Return the patterns to subscribe to: everything, if the camera is recorded.
+    """Return the patterns to subscribe to: everything if the camera is recorded.
 
     Otherwise they are all known keys except the image key: without a subscriber, no images are rendered.
     """

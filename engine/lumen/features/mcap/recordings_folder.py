@@ -18,7 +18,7 @@ _NOTE = ".begun"
 
 
 class BegunRecording(NamedTuple):
-    """A recording that was begun; `written` is whether a process is still writing it."""
+    """A recording that has a note; `written` is True while a process is writing it."""
 
     path: Path
     written: bool

@@ -35,7 +35,7 @@ class RecordingRescue:
             self._thread.start()
 
     def close(self, patience: float = 20.0) -> None:
-        """Wait at most `patience` [s] until the rescue is done."""
+        """Wait at most `patience` [s] until all repairs are done."""
         if self._thread.started:
             self._thread.join(patience)
 

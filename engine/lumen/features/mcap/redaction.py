@@ -39,7 +39,7 @@ class Redaction(NamedTuple):
 def redacted(path: Path, person: PersonName) -> tuple[Redaction, Changed]:
     """Return the number of items about a person in a recording, and the function that removes them.
 
-    Raises RecordingError if it is not a recording.
+    Raises RecordingError if the file is not a recording.
     """
     times, messages, files = list[int](), 0, 0
     for item in read_recording(path):

@@ -67,7 +67,7 @@ class RingTape:
         self._until = min(now + AFTER, self._marked + max(AFTER, self._settings.ring))
 
     def settle(self, now: float) -> None:
-        """Complete what is due: a chunk, a piece, or a recording to keep."""
+        """Complete a chunk, a piece, or a marked recording if it is due."""
         try:
             if self._file:
                 self._file.settle()

@@ -52,7 +52,7 @@ class RobotView:
         )
 
     def look(self, at: float) -> Iterator[RecordedMessage]:
-        """Yield the message with the shapes of all links, valid from the time `at` [s since 1970].
+        """Yield a message with the shapes of all links, valid from `at` [s since 1970].
 
         Without links, nothing is yielded.
         """

@@ -96,7 +96,7 @@ class DaemonApi:
         return call
 
     def request(self, method: str, path: str, body: Any = None, patience: float = PATIENCE) -> Any:
-        """Make a request on this thread; return the JSON data of the answer, None if the answer is empty.
+        """Make a request on this thread; return the answer's JSON data, None if the answer is empty.
 
         It waits at most `patience` [s]. Raises RobotLostError if the daemon does not answer, RobotFailedError if it
         refuses the request or its answer is not JSON.
@@ -105,7 +105,7 @@ class DaemonApi:
         return self._request(method, path, content, {"Content-Type": "application/json"} if content else {}, patience)
 
     def upload(self, name: str, wav: bytes) -> None:
-        """Store a sound under a name on the robot. Raises RobotError if the daemon does not accept it."""
+        """Store a WAV file on the robot as `name`. Raises RobotError if the daemon does not answer or accept it."""
         mark = uuid.uuid4().hex
         head = f'--{mark}\r\nContent-Disposition: form-data; name="file"; filename="{name}"\r\n'
         content = head.encode() + b"Content-Type: audio/wav\r\n\r\n" + wav + f"\r\n--{mark}--\r\n".encode()

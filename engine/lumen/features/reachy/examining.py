@@ -9,13 +9,13 @@ from lumen.features.reachy.set_up import ADDRESS
 from lumen.features.reachy.taking_over import TESTED
 
 DoctorFinding = tuple[str, str, str]
-"""A name, a severity, and a text."""
+"""The name of the check, a severity, and a text."""
 
 
 def examine(options: Mapping[str, str]) -> Iterator[DoctorFinding]:
     """Yield the findings about the daemon at the address in the option `url`.
 
-    Raises UsageError if that is not an address.
+    Raises UsageError if that is not a valid address.
     """
     try:
         demand("reachy", "a Reachy Mini", "websockets")

@@ -12,7 +12,7 @@ FREE = radians(55)
 
 
 def possible(joints: Mapping[str, float], body: Body) -> dict[str, float]:
-    """Return positions near `joints` that the robot can take [rad, m].
+    """Return positions near `joints` that the robot can reach [rad, m].
 
     They are within the joints' limits; the body follows the head, and the head is within reach of its rods.
     """

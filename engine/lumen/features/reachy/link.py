@@ -37,7 +37,7 @@ class LinkChange(NamedTuple):
     seconds: float
     """The time for which the robot was away [s]; 0 for `robot.lost`."""
     reason: str
-    """Why the robot is lost; empty if it is back."""
+    """The reason why the robot is lost; empty if it is back."""
 
 
 class Measured(NamedTuple):
@@ -53,7 +53,7 @@ NOTHING_MEASURED = Measured({}, 0.0)
 
 
 class ReachyLink:
-    """Keeps the WebSocket open; `take_over(again)` prepares the robot, on the thread that connects.
+    """Keeps the WebSocket open; `take_over(again)` prepares the robot before each connection, on the same thread.
 
     `again` is False for the first connection.
     """
@@ -73,7 +73,7 @@ class ReachyLink:
         self._sender = WatchedThread("lumen-reachy-targets", self._send_targets)
 
     def open(self) -> None:
-        """Connect for the first time. Raises RobotError if that fails, MissingExtraError without the extra."""
+        """Connect for the first time. Raises RobotError if that fails, MissingExtraError if `websockets` is missing."""
         demand("reachy", "a Reachy Mini", "websockets")
         try:
             self._connect(again=False)
@@ -90,7 +90,7 @@ class ReachyLink:
             self._wanted.notify()
 
     def keep_still(self) -> None:
-        """Drop a target that has not been sent yet."""
+        """Drop the target if it has not been sent yet."""
         with self._wanted:
             self._target = None
 
@@ -135,7 +135,7 @@ class ReachyLink:
         self.up = True
 
     def _keep(self) -> None:
-        """Receive messages, and connect again whenever the connection breaks."""
+        """Receive messages until the end, and reconnect whenever the connection breaks."""
         while not self._ending.is_set():
             try:
                 while not self._ending.is_set():

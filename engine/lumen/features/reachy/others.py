@@ -1,6 +1,6 @@
 """Detects other programs that move Reachy Mini, and the direction of speech, by polling its daemon.
 
-Programs that stream targets, as Lumen does, are detected by measured poses.
+Programs that stream targets, as Lumen does, are detected from measured poses.
 """
 
 import logging
@@ -53,11 +53,11 @@ class DaemonMoves:
         return not self._running <= self.ours
 
     def sounds(self) -> list[float]:
-        """Return the directions of speech since the last call: angles to the left of the head's front [rad]."""
+        """Return the last directions of speech since the last call, at most 3: angles to the left of the head [rad]."""
         return [self._sounds.popleft() for _ in range(len(self._sounds))]
 
     def now(self) -> list[str]:
-        """Return the ids of the moves that the daemon runs now. Raises RobotError if it does not answer."""
+        """Return the ids of the moves that the daemon plays now. Raises RobotError if it does not answer."""
         running = self._api.request("GET", "/api/move/running", patience=2.0)
         return [str(move.get("uuid")) for move in running if isinstance(move, dict)]
 

@@ -16,7 +16,7 @@ LYING_HEIGHT, LYING_PITCH = -0.035, 0.3
 
 
 def rotation(roll: float, pitch: float, yaw: float) -> Matrix3:
-    """Return the rotation matrix Rz(yaw) Ry(pitch) Rx(roll), row by row; angles in [rad]."""
+    """Return the rotation matrix Rz(yaw) Ry(pitch) Rx(roll) as a tuple of rows; angles in [rad]."""
     cr, sr, cp, sp, cy, sy = cos(roll), sin(roll), cos(pitch), sin(pitch), cos(yaw), sin(yaw)
     return (
         (cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr),
@@ -28,7 +28,7 @@ def rotation(roll: float, pitch: float, yaw: float) -> Matrix3:
 def target_message(joints: Mapping[str, float]) -> dict[str, Any]:
     """Return the daemon's `set_full_target` for the positions of all joints [rad, m].
 
-    `head` is the pose of the head relative to the base, a 4 x 4 matrix row by row; `antennas` are right, left.
+    `head` is the head's pose relative to the base, a 4 x 4 matrix in row order; `antennas` are right, left.
     """
     x, y, z, roll, pitch, yaw = (joints[name] for name in HEAD)
     rows = zip(rotation(roll, pitch, yaw), (x, y, z), strict=True)
@@ -57,7 +57,7 @@ def motor_joints(message: Mapping[str, Any]) -> dict[str, float]:
 
 
 def lies(joints: Mapping[str, float]) -> bool:
-    """Return whether the head lies on the body, as it does while the robot sleeps."""
+    """Return whether the head rests on the body, as it does while the robot sleeps."""
     return joints["head_z"] < LYING_HEIGHT and joints["head_pitch"] > LYING_PITCH
 
 

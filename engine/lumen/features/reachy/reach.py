@@ -13,7 +13,7 @@ from lumen.motion.trajectories import Trajectory
 SHORT_ANGLE, SHORT_LENGTH = radians(1.0), 0.001
 """A joint's distance from its goal above which it is reported [rad], [m]."""
 SAMPLE_PERIOD = 0.05
-"""The period in which a motion is sampled [s]."""
+"""The period with which a motion is sampled [s]."""
 
 
 class Shortage(NamedTuple):
@@ -46,7 +46,7 @@ def shortest(goal: Mapping[str, float], near: Mapping[str, float], time: float =
 
 
 def worst_of(motion: MotionDefinition, body: Body) -> Shortage | None:
-    """Return the joint that falls farthest short in a motion, and when; None if the robot reaches every pose.
+    """Return the greatest shortage of a joint in a motion; None if the robot reaches every sampled pose.
 
     Joints that the motion does not move are in the posture Stand.
     """

@@ -35,7 +35,7 @@ _log = logging.getLogger(__name__)
 
 
 class ReachyRobot(ExecutingRobot):
-    """The Reachy Mini whose daemon is at `url`, in real time: `clock` returns the time of its answers and events [s].
+    """The Reachy Mini whose daemon is at `url`; `clock` returns the real time of its answers and events [s].
 
     `voice` is its row in `voices`, or `none`; sound files are in `root`. If the connection breaks, all commands fail
     and `robot.lost` is raised. After a reconnection, the robot is woken if it was awake, and `robot.back` is raised.

@@ -1,4 +1,4 @@
-"""The poses of Reachy Mini's head that its six rods reach: the inverse kinematics of a Stewart platform.
+"""Computes which poses of Reachy Mini's head its six rods reach, by the inverse kinematics of a Stewart platform.
 
 Each rod connects the tip of a motor's arm with the platform beneath the head. The dimensions in `kinematics_data.json`
 and the motors' limits are copied from `reachy-mini` 1.13.0 (Pollen Robotics, Apache-2.0). Its own solver returns the
@@ -23,7 +23,7 @@ STEPS = 12
 
 
 class Motor(NamedTuple):
-    """A motor beneath the head, in the body's frame."""
+    """A motor beneath the head, in the body's frame of reference."""
 
     place: tuple[float, float, float]
     """The position of the motor [m]."""
@@ -51,7 +51,7 @@ MOTORS = (
 
 
 def motor_angles(head: Mapping[str, float], body: float) -> tuple[float | None, ...]:
-    """Return the angle of each motor [rad] for a pose of the head, with the body at `body` [rad].
+    """Return each motor's angle [rad] for a pose of the head, with the body at `body` [rad].
 
     The angle is None for a motor whose rod can't span the distance. The motors' limits are ignored.
     """

@@ -18,7 +18,7 @@ class TypedVisitors:
         """Do nothing: real visitors place themselves."""
 
     def face(self) -> tuple[float, float] | None:
-        """Return None: only a visual module sees faces."""
+        """Return None, because only a visual module sees faces."""
         return None
 
 

@@ -101,7 +101,7 @@ class ReachySkills:
     def _go(self, target: Mapping[str, float], speed: float, least: float, where: str) -> Steps:
         """Move the joints smoothly to `target` [rad, m], in at least `least` [s] at full speed.
 
-        Raises RobotFailedError if the rods, or an obstacle, keep the head from it.
+        Raises RobotFailedError if the rods, or an obstacle, keep the head from `target`.
         """
         goal, start = self._mover.goal, dict(self._mover.goal)
         way = {name: angle - start[name] for name, angle in target.items()}

@@ -1,4 +1,4 @@
-"""Speech and sound files of Reachy Mini: each becomes a WAV file that is uploaded to its daemon and played there."""
+"""Speech and sound files for Reachy Mini: converts each to a WAV file, and uploads it to the daemon."""
 
 import hashlib
 import io
@@ -19,7 +19,7 @@ from lumen.run.sound import Sound
 from lumen.upkeep.ratelimit import OnceLog
 
 MUTE = "none"
-"""The voice of a silent robot: a text takes as long as its speech would, and a module on the bus can speak it."""
+"""The voice of a silent robot: a text takes as long as its speech would, and a module on the bus can say it."""
 _log = logging.getLogger(__name__)
 
 
@@ -27,7 +27,7 @@ class LoadedSound(NamedTuple):
     """A sound that the daemon can play."""
 
     duration: float
-    """Its duration [s]."""
+    """The sound's duration [s]."""
     file: str = ""
     """The name of its file on the robot; empty for a silent sound."""
 

@@ -1,4 +1,4 @@
-"""An activity of Reachy Mini as steps that never block: each yields a call, or waits for the next tick."""
+"""An activity of Reachy Mini as steps that never block: each step yields a call, or waits for the next tick."""
 
 from collections.abc import Callable, Generator
 from typing import Any

@@ -1,4 +1,4 @@
-"""Recordings of a bus in MCAP, for Foxglove and Lichtblick: written, read, repaired, copied.
+"""Writes, reads, repairs and copies recordings of a bus in MCAP, for Foxglove and Lichtblick.
 
-The required packages are the extra `recording`; they are imported when a recording is written or read.
+The packages of the extra `recording` are imported when a recording is written or read.
 """

@@ -42,7 +42,7 @@ def nanoseconds(moment: float) -> int:
 
 
 class MessageEncoder:
-    """Encodes messages of a project's bus; call `use` for another bundle."""
+    """Encodes the messages of a project's bus; `use` switches to another bundle."""
 
     def __init__(self, project: Project | None) -> None:
         self._schemas: Mapping[str, tuple[str, Mapping[str, object]]] = {}
@@ -100,7 +100,7 @@ def json_bytes(data: Any) -> bytes:
 
 
 def _envelope(message: Message, body: Any) -> dict[str, Any]:
-    """Return the body with its origin.
+    """Return the body with the message's origin added.
 
     A body that is not an object, or that already has ORIGIN_KEY, is wrapped in `value`: Foxglove shows only objects.
     """

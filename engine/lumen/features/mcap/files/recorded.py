@@ -12,9 +12,9 @@ class RecordedChannel(NamedTuple):
     form: str
     """The name of the schema."""
     language: str
-    """The kind of the schema's data: `jsonschema` or `protobuf`."""
+    """The language of the schema: `jsonschema` or `protobuf`."""
     schema: bytes
-    """The schema's data."""
+    """The encoded schema."""
 
 
 class RecordedMessage(NamedTuple):
@@ -27,7 +27,7 @@ class RecordedMessage(NamedTuple):
 
 
 class RecordedFile(NamedTuple):
-    """An attached file that helps to understand a recording; `at` is its time [ns since 1970, in UTC]."""
+    """An attached file that explains a recording; `at` is its time [ns since 1970, in UTC]."""
 
     name: str
     kind: str

@@ -27,7 +27,7 @@ def demand_recording() -> None:
 
 
 class RecordingFile:
-    """Writes a new recording, readable only by its owner; `messages` is the number of messages, `bytes` the size.
+    """Writes a new recording, readable only by its owner; `messages` is the number of written messages.
 
     Raises MissingExtraError if a package is missing, and OSError if the disk fails: the file can then be repaired.
     """

@@ -1,4 +1,4 @@
-"""Rewrites recordings: to add the index after a crash, to join several, or to remove something."""
+"""Rewrites recordings: to add the index after a crash, to join several, or to remove items."""
 
 import os
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -17,7 +17,7 @@ Changed = Callable[[Recorded], Recorded | None]
 def rewrite(
     sources: Sequence[Path], target: Path, changed: Changed = lambda item: item, more: Iterable[Recorded] = ()
 ) -> int:
-    """Write all readable items of these recordings, then `more`, as one recording; return the number of messages.
+    """Write the sources' readable items, as `changed` returns them, then `more`, to `target`; count the messages.
 
     The target, which can be one of the sources, is replaced only after everything is written. Raises RecordingError if
     a source is not a recording, or the disk fails.
@@ -45,7 +45,7 @@ def rewrite(
 
 
 def recover(path: Path) -> int | None:
-    """Repair an incomplete recording in place; return the number of its messages, None if it is complete.
+    """Repair an incomplete recording in place; return the number of its messages, None if it was complete.
 
     Raises RecordingError if it is not a recording, or the disk fails.
     """
