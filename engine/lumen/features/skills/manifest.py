@@ -37,7 +37,7 @@ ProgramKind = Literal["python", "command", "module"]
 
 @dataclass(frozen=True)
 class Skill:
-    """The part of a manifest that its performer needs."""
+    """The settings of a manifest that its performer needs."""
 
     kind: ProgramKind
     target: tuple[str, ...]
@@ -141,7 +141,7 @@ def _schema(data: Mapping[str, Any], key: str, languages: Sequence[str], report:
 
 
 def _typed(schema: Any) -> Any:
-    """Return the schema of a property, with the type `string` if its `enum` contains only texts."""
+    """Return a property's schema; without a `type`, it gets the type `string` if its `enum` contains only texts."""
     values = schema.get("enum") if isinstance(schema, Mapping) and "type" not in schema else None
     return {"type": "string", **schema} if values and all(isinstance(value, str) for value in values) else schema
 
@@ -168,7 +168,7 @@ _TYPES: Mapping[str, tuple[type, ...]] = {
 
 
 def _check_default(schema: Mapping[str, Any], where: NodePath, report: DocumentReport, *, fits: bool) -> None:
-    """Report a default that does not fit its schema; with `fits`, only its form as a duration is checked."""
+    """Report a default that does not fit its schema; with `fits`, check only whether a duration is valid."""
     default = schema["default"]
     for fault in [] if fits else faults({"default": default}, {"properties": {"default": schema}})[:1]:
         report(SKILL_DEFAULT, where, f"this default does not fit: {fault.message}", fault.hint)
@@ -214,7 +214,7 @@ def _check_takes(row: VerbRow, report: DocumentReport) -> None:
 
 
 def _with_texts(schema: Any, languages: Sequence[str]) -> Any:
-    """Return the schema with each description in one language."""
+    """Return the schema with each multilingual description reduced to one language."""
     if isinstance(schema, list):
         return [_with_texts(inner, languages) for inner in schema]
     if not isinstance(schema, Mapping):

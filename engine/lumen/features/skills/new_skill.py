@@ -1,4 +1,4 @@
-"""The files of a new skill: its manifest and its code, and a behaviour with a story that try it."""
+"""Writes the files of a new skill: its manifest, its code, and a behaviour and a story that try it."""
 
 import re
 from pathlib import Path
@@ -54,7 +54,7 @@ never: [failed]
 def write_skill(root: Path, name: str) -> list[str]:
     """Write the files of a skill into a project; return their paths relative to `root`.
 
-    Raises UsageError if the skill can't have that name, or if one of the files exists already.
+    Raises UsageError if the skill can't have that name, or if any of the files exists.
     """
     if is_built_in(name) or name in usable_verbs() or name == "if":
         raise UsageError(f"there is a verb `{name}` already: give the skill another name")

@@ -17,7 +17,7 @@ from lumen.run.status import SKILL_STATES
 from lumen.upkeep.threads import WatchedThread
 
 LOOK_PERIOD = 0.5
-"""The time between two checks of the code of skills [s]."""
+"""The time between two checks of the skills' code for changes [s]."""
 TROUBLE_ROUTE, TROUBLE_TTL = "trouble", 10.0
 FAILED = "error.execution"
 REAL_SKILLS = "real_skills"

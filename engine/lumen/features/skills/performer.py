@@ -130,7 +130,7 @@ class _Performance:
         return MessageOrigin(sender=f"skill {self._call.skill}")
 
     def _end(self) -> None:
-        """Let the program end a cancelled call; kill it if it does not within `GRACE`."""
+        """Have the program end a cancelled call; kill the program if the call does not end within `GRACE`."""
         try:
             self._process.order(cancel=True)
             ended = self._process.await_end(GRACE)

@@ -31,7 +31,7 @@ MAX_PRINTED_CHARACTERS = 300
 WRITE_PATIENCE = 1.0
 """The time limit for a program to read its input [s]."""
 DRAIN = 0.05
-"""The time to wait for the last output of a program [s]."""
+"""The time to wait for a program's last output [s]."""
 HEADROOM = 4
 """The multiple of `memory` that a program can reserve; its actual use is measured."""
 
@@ -206,7 +206,7 @@ class SkillProcess:
         return stream
 
     def _exit(self) -> str:
-        """Return how the program ended, after it closed its standard output."""
+        """Return the reason why the program ended; it has closed its standard output."""
         try:
             code = self._popen.wait(GRACE)
         except subprocess.TimeoutExpired:
@@ -217,7 +217,7 @@ class SkillProcess:
         return f"it ended with exit code {code}{last}"
 
     def _line(self, line: str) -> None:
-        """Process a line of its standard output: a message, or printed text."""
+        """Process a line of the program's standard output: a message, or printed text."""
         try:
             message = json.loads(line) if line.startswith("{") else None
         except (ValueError, RecursionError):

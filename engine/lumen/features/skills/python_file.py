@@ -79,11 +79,11 @@ def _functions(statements: Iterable[ast.AST]) -> Iterator[ast.FunctionDef | ast.
 
 
 _BLOCKS = ("body", "orelse", "finalbody", "handlers", "cases")
-"""The fields of statements that hold statements."""
+"""The fields of AST nodes that contain statements."""
 
 
 def _marked(function: ast.FunctionDef | ast.AsyncFunctionDef) -> bool:
-    """Return whether a function has the decorator `@skill`, however that was imported."""
+    """Return whether a function has the decorator `@skill` or `@….skill`, however it was imported."""
     names = {each.id for each in function.decorator_list if isinstance(each, ast.Name)}
     return "skill" in names | {each.attr for each in function.decorator_list if isinstance(each, ast.Attribute)}
 

@@ -27,15 +27,14 @@ from lumen.upkeep.threads import WatchedThread
 MAX_PROCESSES = 4
 """The maximum number of simultaneous calls of a skill's program."""
 FIRST_PAUSE, LONGEST_PAUSE = 0.5, 30.0
-"""The first and the longest pause before a program that crashed is started again [s]."""
+"""The first and the longest pause before a crashed program is started again [s]."""
 LOADING = 20.0
 """The time limit for loading a skill's code [s]."""
 MAX_CODE_BYTES = 4_000_000
 MAX_TROUBLE = 200
 """The maximum length of a trouble in the skills' states [characters]."""
 RUNNING, READY, PAUSED, IDLE = "running", "ready", "paused", "idle"
-"""The states of a skill: a call is under way; a program waits for a call; the pause after a crash is not over; the
-next call starts a program."""
+"""The states of a skill: a call is in progress; a program is ready; a crash requires a pause; no program runs."""
 
 _CHILD = "import sys; sys.path.append({engine!r}); from lumen.skills import serve; serve()"
 _ENGINE = str(Path(lumen.__file__).parents[1])
@@ -102,7 +101,7 @@ class _Bench:
 
 
 class Workshop:
-    """Lends processes to calls of the skills of a `project`.
+    """Lends processes to the calls of a project's skills.
 
     `tell` prints a line about a skill; `report` prints a problem, which other processes and the console show as well.
     `failed` receives a skill and the reason why a call failed, on the call's thread.
@@ -333,7 +332,7 @@ class Workshop:
             _in_background(process.close)
 
     def _started(self, name: str, bench: _Bench) -> SkillProcess:
-        """Return the process of a new program. Raises RobotFailedError if it can't be started or its code loaded."""
+        """Start a program and return its process. Raises RobotFailedError if it can't be started, or its code loaded."""
         skill, code = bench.skill, bench.code
         if skill.kind == "command":
             return SkillProcess(name, skill.target, str(self._root), skill.memory, lambda line: self.tell(name, line))

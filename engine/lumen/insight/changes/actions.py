@@ -79,7 +79,7 @@ def paired(old: Sequence[T], new: Sequence[T], sort: Callable[[T], object]) -> I
 
 
 def _tags(items: Sequence[T], pool: list[T]) -> list[int]:
-    """Return for each item the index of its equal in `pool`; an item that is not there yet is appended."""
+    """Return for each item the index of an equal item in `pool`; an item without an equal is appended to `pool`."""
     found = []
     for item in items:
         if item not in pool:
@@ -127,7 +127,7 @@ def _text(language: str, texts: Sequence[object] | None, title: str, when: str, 
 
 
 def _whole(texts: Sequence[object] | None) -> str:
-    """Return all alternatives of a text, one per line."""
+    """Return all alternatives of a text, one per line; empty for None."""
     return "\n".join(str(getattr(one, "text", "")) for one in texts or ())
 
 

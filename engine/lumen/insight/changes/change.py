@@ -28,7 +28,7 @@ class Risk(IntEnum):
 
 @dataclass(frozen=True, slots=True)
 class Change:
-    """One difference; two changes are equal if their kinds, subjects, sentences, risks and files are."""
+    """One difference; two changes are equal if their kinds, subjects, sentences, risks and files are equal."""
 
     kind: str
     """The kind of part that changed: `text`, `state`, `route`, …"""

@@ -61,7 +61,7 @@ class _Comparison:
                 yield self.change("state", path, sentence)
 
     def outermost(self, machine: MachineDefinition, paths: Collection[str], how: str) -> Iterator[Change]:
-        """Yield a change for each of these states that is not inside another, with the number of those inside it."""
+        """Yield a change for each outermost state in `paths`, with the number of states in `paths` inside it."""
         within = Counter(around for path in paths for around in _around(path) if around in paths)
         for path in paths:
             if machine.states[path].parent not in paths:

@@ -13,12 +13,12 @@ from lumen.insight.changes.sections import AT_NEXT_START, RESTART_FIELDS, sectio
 from lumen.language.projects import Project
 
 MAX_SUMMARY_CHANGES = 4
-"""The number of changes up to which a summary names each; with more, kinds with more than two changes are counted."""
+"""Up to this number, a summary names each change; beyond it, a kind with more than two changes is only counted."""
 
 _SHARED_MOVEMENTS = ("gestures", "life")
 """The folders in motions/ for all robots; every other folder is named after a robot's model."""
 _SELF = ("root", "hash", "documents", "told_apart")
-"""Fields that are no settings: those of the files themselves, and one that follows from `robots`."""
+"""Fields that are not settings: they describe the files, or follow from `robots`."""
 
 
 def changes(old: Project, new: Project) -> tuple[Change, ...]:
@@ -100,9 +100,9 @@ def _movements(old: Project, new: Project) -> Iterator[Change]:
 
 
 def _file_of_movement(change: Change, project: Project) -> str:
-    """Return the file of a change: the one in the robot's own folder, else that for all robots; empty without either.
+    """Return a change's file: in the robot's own folder, else in the folder for all robots; empty if neither exists.
 
-    No other robot's files were read.
+    The project contains no other robot's files.
     """
     inside = [f"{change.about}.yaml"] if change.kind == "motion" else [change.kind, f"{change.about}.yaml"]
     for file in project.documents:
@@ -119,7 +119,7 @@ def _manifests(project: Project) -> dict[str, VerbRow]:
 
 
 def _settings(old: Project, new: Project) -> Iterator[Change]:
-    """Yield the changes of the other settings in lumen.yaml."""
+    """Yield the changes in lumen.yaml, except those of routes and of sections with entries."""
     for name, title in RESTART_FIELDS.items():
         if getattr(old, name) != getattr(new, name):
             yield Change("fixed", name, f"{title} changed: {AT_NEXT_START}", Risk.RESTART, "lumen.yaml")

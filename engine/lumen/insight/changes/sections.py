@@ -39,7 +39,7 @@ def section_changes(old: Project, new: Project, among: Callable[[Section], bool]
 
 
 def live_sections(old: Project, new: Project) -> dict[str, object]:
-    """Return the new sections, but with the old values of those that take effect only at the next start."""
+    """Return the new sections; those that take effect only at the next start keep their old values."""
     fixed = {key for key, row in table("sections").items() if row.fixed}
     kept = {key: settings for key, settings in old.sections.items() if key in fixed}
     return {**{key: settings for key, settings in new.sections.items() if key not in fixed}, **kept}

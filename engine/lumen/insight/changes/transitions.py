@@ -11,7 +11,7 @@ from lumen.language.actions import Expression, Template
 from lumen.language.machines import State, Transition
 
 _ROW = "on `hears "
-"""The beginning of the trigger of a row of `hears`."""
+"""The beginning of the trigger that belongs to a row of `hears`."""
 
 PathMapping = Callable[[tuple[str, ...]], tuple[str, ...]]
 StateNaming = Callable[[str], str]
@@ -100,7 +100,7 @@ def _by_trigger(transitions: list[Transition]) -> dict[str, list[Transition]]:
 def _comparable(value: Any) -> Any:
     """Return a value with its expressions as written.
 
-    Compiled ones contain the number of a row of `hears`, which changes with the rows before it.
+    Compiled expressions contain the number of a row of `hears`, which changes with the rows before it.
     """
     match value:
         case Expression(source):
@@ -117,7 +117,7 @@ def _comparable(value: Any) -> Any:
 
 
 def _moved(was: str, now: str) -> str:
-    """Return how a trigger changed, such as `waits 15 s, not 12 s`; empty if the two are of different kinds."""
+    """Return how a trigger changed, such as `waits 15 s, not 12 s`; empty unless both are delays or rows of `hears`."""
     for begin, verb, quote in (("after ", "waits", ""), (_ROW, "hears", "`")):
         if was.startswith(begin) and now.startswith(begin):
             return f"{verb} {quote}{now.removeprefix(begin)}, not {quote}{was.removeprefix(begin)}"

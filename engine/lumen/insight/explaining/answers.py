@@ -71,7 +71,7 @@ def why(steps: Iterable[RecordedStep], what: str = "", until: float | None = Non
 
 
 def _needs(history: StepHistory, number: int, links: tuple[Link, ...]) -> Iterator[Link]:
-    """Yield the steps that were needed, newest first, without the first step and those that the chain names."""
+    """Yield a link for each needed step, newest first, except the first step and those that the chain names."""
     named = {link.number for link in links}
     for earlier in sorted(set(directly_needed(history, number)) - named - {0}, reverse=True):
         step = history.steps[earlier].step

@@ -30,7 +30,7 @@ FIRST = 6
 def boundaries(machine: MachineDefinition, sources: Iterable[str], scope: Scope) -> dict[ValuePath, list[Any]]:
     """Return values that may change a guard, for each path of the context and the event's data that guards read.
 
-    The values nearest to the present one come first.
+    Numbers nearest to the present value come first.
     """
     found: dict[ValuePath, list[Any]] = {}
     trees = [parse_expression(source) for source in sources]
@@ -55,9 +55,9 @@ def value_at(path: ValuePath, scope: Scope) -> Any:
 
 
 def _nearest(path: ValuePath, values: Iterable[Any], scope: Scope) -> list[Any]:
-    """Return the values of the same kind as the present one, each once; numbers by their distance from the present one.
+    """Return the distinct values of the present value's kind, without that value; numbers by their distance from it.
 
-    At most MAX_VALUES are returned, and not the present value itself.
+    At most MAX_VALUES are returned. If there is no present value, or it is None, values of all kinds are returned.
     """
     now = value_at(path, scope)
     fitting = [v for v in values if v is not ABSENT and (now is ABSENT or now is None or _kind(v) == _kind(now))]

@@ -62,7 +62,7 @@ class Chain:
             yield partial(self.doing, effect.number, "@".join(reversed(ids)), name)
 
     def command(self, number: int, command: Command) -> LinkWalk:
-        """Yield a command, the action that issued it, and the search for what triggered the action."""
+        """Yield a command, the action that issued it, and the search for the action's trigger."""
         deed = self.history.deed(number, command)
         text = of_command(command) + self._refusal(number, _id(command))
         if deed is None:
@@ -119,7 +119,7 @@ class Chain:
             yield partial(self.trigger, number, owner)
 
     def event(self, number: int, event: Event | None, owner: str) -> LinkWalk:
-        """Yield the action that raised an event, or the search for its origin outside."""
+        """Yield the action that raised an event, or the search for its origin outside the behaviour."""
         deeds = self.history.trace(number).deeds
         raised = next((deed for deed in deeds if deed.what is event), None) if event else None
         if raised is None or event is None:

@@ -55,7 +55,7 @@ def values(guard: Expression | None, scope: Scope) -> dict[str, Any]:
 
 
 def awaits_event(source: str) -> tuple[bool, ...]:
-    """Return for each part of a guard whether it reads the event, so that it has no value before an event comes."""
+    """Return for each part of a guard whether it reads the event, and thus has no value before an event."""
     return tuple(
         any((path_of(node) or ("",))[0] == "event" or looks_at_what_was_heard(node) for node, _ in walk(part))
         for part in _joined(parse_expression(source))

@@ -1,4 +1,4 @@
-"""The earlier inputs on which an outcome rests; without all others, the outcome would have been the same.
+"""The earlier inputs on which an outcome depends; without all others, the outcome would have been the same.
 
 The answer can include too many inputs: it contains each input that could have decided, not only those that did.
 """

@@ -24,7 +24,7 @@ class Link:
     """A link in a chain of causes: an event, a command or another occurrence."""
 
     kind: LinkKind
-    """The kind of link."""
+    """The kind of occurrence."""
     text: str
     """The event, command or other occurrence, in words."""
     at: float

@@ -16,7 +16,7 @@ MAX_DEEDS = 8
 
 
 def foreseen(machine: MachineDefinition, snapshot: Snapshot, event: Event) -> list[dict[str, Any]]:
-    """Return what the robot would say and do because of an event, in order: `{"verb": "say", "text": "Hello", …}`.
+    """Return the commands that an event would cause, in order: `{"verb": "say", "text": "Hello", …}`.
 
     It assumes that each command ends as usual, and that nothing else happens. The list ends at the next transition,
     after `MAX_DEEDS`, or if the step raises a LumenError.
