@@ -21,7 +21,7 @@ class TriedExample(NamedTuple):
     file: str
     """The file of the function, relative to the project."""
     example: FunctionExample
-    """The example."""
+    """The example with its arguments and expected value."""
     call: str
     """The call as it would be written in an expression."""
     wrong: str

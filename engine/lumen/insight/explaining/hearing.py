@@ -1,4 +1,4 @@
-"""The rows of `hears` of a state and a sentence: the row that is taken, and why the others are not."""
+"""Finds the row of `hears` that a state takes for a sentence, and why it does not take the other rows."""
 
 from collections.abc import Iterator, Mapping
 from typing import Any, Literal, NamedTuple
@@ -29,9 +29,9 @@ class HeardRow(NamedTuple):
     clause: str = ""
     """The part of the sentence that contains the words."""
     name: str = ""
-    """The name of the phrase."""
+    """The name of the phrase; empty if no phrase was found."""
     strength: int = 0
-    """The number of words of the phrase."""
+    """The number of words in the phrase; 0 if no phrase was found."""
     late: bool = False
     """Whether the row is tried only if no state has taken another row."""
     better: Hears | None = None
@@ -41,7 +41,7 @@ class HeardRow(NamedTuple):
 
     @property
     def why(self) -> str:
-        """The words that were found and why they do not count: `“dance” is negated in “Please don't dance”`."""
+        """Why the row is taken or not: `“dance” is negated in “Please don't dance”`; empty if taken without words."""
         words, clause = _quoted(self.words), _quoted(self.clause)
         match self.fate:
             case "taken":

@@ -1,4 +1,4 @@
-"""Recorded steps: the material from which questions are answered."""
+"""Recorded steps, from which questions are answered."""
 
 from collections.abc import Sequence
 from functools import cached_property
@@ -94,7 +94,7 @@ def _before_the_first(first: RecordedStep) -> Snapshot:
 
 
 def ended_timer(before: Snapshot | None, event: Event) -> Timer | None:
-    """Return the timer whose end is that event, in any of the behaviours that run, else None."""
+    """Return the timer, of any running behaviour, that ended with that event; else None."""
     id, owner = inner_id(event.sendid)
     inner = within(before, owner)
     return next((t for t in inner.timers if (t.id, t.event) == (id, event.name)), None) if inner and id else None

@@ -18,7 +18,7 @@ class PlacedDeed(NamedTuple):
     owner: str
     """The ids under which the machine runs; empty for the outermost."""
     machine: MachineDefinition
-    """The machine."""
+    """The machine that contains the action."""
     state: State
     """The state that has the action."""
     block: str
@@ -66,7 +66,7 @@ def _flat(block: tuple[PlacedAction, ...]) -> Iterator[tuple[Action, NodePath]]:
 
 
 def same_text(wanted: str, text: str) -> bool:
-    """Return whether words are part of a text, ignoring case and punctuation."""
+    """Return whether a text contains these words, ignoring case and punctuation; False without any words."""
     return bool(wanted) and _plain(wanted) in _plain(text)
 
 

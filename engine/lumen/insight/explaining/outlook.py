@@ -19,7 +19,7 @@ from lumen.statechart.values import Snapshot, Timer
 
 
 class GuardTruth(NamedTuple):
-    """A guard at this moment."""
+    """A guard and its result at this moment."""
 
     text: str
     """The guard as written."""
@@ -60,7 +60,7 @@ class Running(NamedTuple):
     prefix: str = ""
     """The prefix of the names of the behaviour's states, such as `quiz/`."""
     host: str = ""
-    """The path of the state that has invoked the behaviour."""
+    """The path of the state that has invoked the behaviour; empty for the outermost."""
 
 
 def running(machine: MachineDefinition, snapshot: Snapshot, owner: str = "", host: str = "") -> Iterator[Running]:
@@ -75,7 +75,7 @@ def running(machine: MachineDefinition, snapshot: Snapshot, owner: str = "", hos
 def ways_out(machine: MachineDefinition, snapshot: Snapshot, at: float, event: Event | None = None) -> Iterator[WayOut]:
     """Yield every way out of the states that are active at `at` [s], innermost states first, invoked behaviours last.
 
-    With an `event`, yield only those that it selects, evaluated with its data.
+    With an `event`, yield only transitions that match the event, evaluated with its data.
     """
     for one in running(machine, snapshot):
         yield from _out_of(one, snapshot, at, event)
@@ -161,7 +161,7 @@ class _Asked:
         )
 
     def _guard(self, transition: CompiledTransition) -> tuple[GuardTruth | None, str]:
-        """Return the truth of a transition's guard, and why it is false for any event; empty if it may be true."""
+        """Return the truth of a transition's guard, and why the transition can't be taken; empty if it can."""
         found = self._known.get(transition)
         if found is None:
             found = self._known[transition] = self._looked_at(transition)

@@ -69,7 +69,7 @@ class Reason:
 
 
 class TransitionRefusals:
-    """Explanations of why single transitions were not taken, in the steps from number `first` on.
+    """Explains why single transitions were not taken in the steps from number `first` on.
 
     `goal` is the state that they should enter; empty if the question is about an action.
     """

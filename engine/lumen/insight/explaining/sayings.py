@@ -1,4 +1,4 @@
-"""Sayings as tests: the right row must take each of them, with the right slots."""
+"""Sayings as tests: the right row must take each saying, with the right slots."""
 
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, NamedTuple

@@ -29,7 +29,7 @@ class FoundPhrase(NamedTuple):
     said: str
     """The words of the phrase as they were said."""
     words: int
-    """The number of words that count."""
+    """The number of words in the phrase."""
     alone: bool | None
     """Whether the phrase is a whole clause; None if it need not be one."""
     negated: bool
@@ -51,7 +51,7 @@ class ExplainedRow(NamedTuple):
     transition: Transition
     """The transition."""
     state: str
-    """The name of its state."""
+    """The name of the transition's state."""
     found: FoundPhrase | None = None
     """The phrase that counts most, else a phrase that does not count; None if none was found."""
     guard: bool | None = None
@@ -75,7 +75,7 @@ class ExplainedRow(NamedTuple):
         return {k: v for k, v in self.caught.items() if k not in ("text", "phrase") and (k, v) != ("answer", None)}
 
     def because(self, taken: "ExplainedRow | None") -> str:
-        """Return in a few words why this row is taken or not; `taken` is the row that is, else None."""
+        """Return why this row is taken or not, empty without a reason; `taken` is the row that is taken, if any."""
         hears, found = self.transition.hears, self.found
         if self.taken:
             return "taken"
@@ -105,7 +105,7 @@ class ExplainedSentence(NamedTuple):
 def explained(
     machine: MachineDefinition, path: str, text: str, context: Mapping[str, Any], language: str = ""
 ) -> ExplainedSentence:
-    """Return how a sentence matches in the state at a path: its own rows, and those of the states around it.
+    """Return how a sentence matches the rows of the state at a path, and the rows of the states around it.
 
     Other regions are ignored, and `In()` is true for these states only.
     """
@@ -131,7 +131,7 @@ def hearing_states(machine: MachineDefinition) -> list[State]:
 
 
 def rows_around(machine: MachineDefinition, path: str) -> list[Hears]:
-    """Return the rows of `hears` of a state and of those around it, inner states first."""
+    """Return the rows of `hears` of a state and of the states around it, inner states first."""
     found: list[Hears] = []
     at: str | None = path
     while at is not None:

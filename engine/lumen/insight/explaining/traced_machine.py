@@ -1,4 +1,4 @@
-"""A machine compiled so that each action records its path while it runs, for steps that are taken again."""
+"""Compiles a machine whose actions record their paths while they run, for steps that are taken again."""
 
 from typing import Any
 

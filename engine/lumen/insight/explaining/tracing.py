@@ -1,4 +1,4 @@
-"""A step taken again with everything that happens on the way; nothing is traced while an exhibition runs."""
+"""Takes a recorded step again, and records its decisions and actions; nothing is traced while an exhibition runs."""
 
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple, Self
@@ -78,7 +78,7 @@ class Deed(NamedTuple):
     owner: str
     """The ids under which the behaviour runs; empty for the outermost."""
     machine: MachineDefinition
-    """The machine."""
+    """The machine that contains the action."""
     what: Command | Event | str
     """A command, an event that was raised, or the id of a `send`."""
     where: NodePath

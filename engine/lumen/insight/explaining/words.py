@@ -76,7 +76,7 @@ def shown(value: Any) -> str:
 
 
 def brought(event: Event) -> dict[str, Any]:
-    """Return the data of an event, by its names in expressions."""
+    """Return an event's data by their names in expressions; empty without data."""
     if isinstance(event.data, Mapping):
         return {f"event.data.{key}": value for key, value in event.data.items()}
     return {} if event.data is None else {"event.data": event.data}

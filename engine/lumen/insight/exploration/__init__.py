@@ -1,4 +1,4 @@
-"""The exploration of a behaviour through everything that can happen, to find states with no way out.
+"""Explores everything that can happen to a behaviour, to find states with no way out.
 
 `abstraction` defines when two snapshots count as one configuration, `stimuli` what can happen, and `samples` the data
 of events.
@@ -59,7 +59,7 @@ def explore(
 ) -> Exploration:
     """Explore the configurations that can be reached, and expand up to `bound` of them.
 
-    `events` are those that may come from outside, each with the JSON Schema of its data. `home` is the name of the
+    `events` are those that can come from outside, each with the JSON Schema of its data. `home` is the name of the
     state that must stay reachable; if it is empty, each innermost state active at the beginning must. A configuration
     beyond the bound may lead anywhere, so no finding depends on one. `progress` is called with the numbers of
     configurations that were expanded and that wait.

@@ -36,7 +36,7 @@ class ExplorationFinding:
     path: tuple[PathStep, ...]
     """The shortest path to the fault."""
     where: NodePath = ()
-    """The place of the property in the file; empty for other faults."""
+    """The path of the property in the file; empty for other faults."""
     patience: float = 0.0
     """The time [s] to wait at the end of the path until a property with a deadline fails; 0 for other faults."""
 

@@ -1,4 +1,4 @@
-"""The states in which the content of a history state still matters, because it may be restored from there."""
+"""The states in which the content of a history state still matters, because it can be restored from there."""
 
 from collections.abc import Iterator, Mapping
 

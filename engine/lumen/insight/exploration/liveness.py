@@ -50,7 +50,7 @@ def assigned_by(transition: Transition, caught: frozenset[str] = frozenset()) ->
 
 
 def _certain(value: ComputedValue) -> bool:
-    """Return whether a value is certain: an expression, unless it is a literal, may fail."""
+    """Return whether a value is certain: an expression can fail, unless it is a literal."""
     return not isinstance(value, Expression) or isinstance(tree_of(value.source), Literal)
 
 
@@ -94,7 +94,7 @@ class Liveness:
         self._without_history: dict[frozenset[str], frozenset[str]] = {}
 
     def of(self, configuration: frozenset[str], history: Mapping[str, tuple[str, ...]]) -> frozenset[str]:
-        """Return the keys that can still matter in a configuration; `history` has what each history remembers."""
+        """Return the keys that can still matter in a configuration; `history` has the paths that histories remember."""
         live = self._without_history.get(configuration)
         if live is None:
             live = frozenset().union(*(self._by_name[name] for name in configuration))
@@ -124,7 +124,7 @@ class Liveness:
         return live
 
     def _successors(self, leaf: str) -> Iterator[tuple[str, frozenset[str]]]:
-        """Yield the leaves that transitions from a leaf or around it may enter, each with the keys overwritten then."""
+        """Yield the leaves that transitions of a leaf or around it can enter, each with the keys overwritten then."""
         for transition in (tr for path in self._around(leaf) for tr in self._machine.states[path].transitions):
             killed, domain = assigned_by(transition, self._caught(transition)), self._domain(transition)
             for target in transition.targets:
@@ -168,7 +168,7 @@ class Liveness:
         return found
 
     def _left_and_entered_again(self, leaf: str) -> Iterator[str]:
-        """Yield the leaves that a history may restore if this leaf or a state around it was active."""
+        """Yield the leaves that a history can restore if this leaf or a state around it was active."""
         around = list(self._around(leaf))
         histories = [state for state in self._machine.states.values() if state.kind is StateKind.HISTORY]
         homes = {state.parent for state in histories}

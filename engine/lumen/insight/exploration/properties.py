@@ -1,7 +1,7 @@
 """Properties that do not hold in every reachable configuration, each with the shortest way to a counterexample.
 
 A deadline is checked from each configuration in which `whenever` becomes true, as long as nothing comes from outside:
-timers end in order, and the robot completes a command at once, or fails.
+timers end in order, and the robot completes each command immediately, or fails.
 """
 
 from collections import deque
@@ -29,7 +29,7 @@ class QuietRun(NamedTuple):
 
     snapshot: Snapshot
     commands: Mapping[str, BodyCommand]
-    """The commands under way, by their ids."""
+    """The commands in progress, by their ids."""
     path: tuple[PathStep, ...] = ()
     """The steps to the end."""
 
@@ -86,7 +86,7 @@ def _late(
 
 
 def _quiet(search: StateSpaceSearch, run: QuietRun) -> list[Stimulus]:
-    """Return what may happen next without input from outside: the robot's answers, else the timer that is due first."""
+    """Return the next stimuli without input from outside: the robot's answers, else the timer that is due first."""
     every = list(search.stimuli.of(run.snapshot, run.commands))
     answers = [s for s in every if s.kind in (StimulusKind.DONE, StimulusKind.FAILED)]
     timers = sorted((s for s in every if s.kind is StimulusKind.TIME), key=lambda s: s.event.at)

@@ -69,7 +69,7 @@ class BrokenProperty(NamedTuple):
 class StateSpaceSearch:
     """The search through the configurations of a machine.
 
-    `events` are those that may come from outside, each with the JSON Schema of its data.
+    `events` are those that can come from outside, each with the JSON Schema of its data.
     """
 
     def __init__(
