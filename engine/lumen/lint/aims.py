@@ -18,7 +18,7 @@ WRONG_SIGN = Code("wrong-sign", "controllers", WARNING, "the robot turns away fr
 MAX_GAIN = 2.0
 """The largest gain that is not reported.
 
-With a delay of 100 to 200 ms, a loop with a gain of 1.5 does not overshoot; one with a gain of 3 overshoots by 46 %.
+With a delay of 100 to 200 ms, a loop does not overshoot with a gain of 1.5; with a gain of 3, it overshoots by 46 %.
 """
 
 OPPOSITE = {"left": "right", "right": "left", "up": "down", "down": "up", "forward": "backward", "backward": "forward"}

@@ -17,7 +17,7 @@ from lumen.talk.patterns import Form, forms
 
 
 class Asking(NamedTuple):
-    """A lookup of a table in the guard of a transition."""
+    """A lookup of a table in a transition's guard."""
 
     table: str
     before: tuple[str, ...]
@@ -47,7 +47,7 @@ def check(draft: ProjectDraft) -> None:
 def _repeated(report: DocumentReport, table: str, rows: int) -> None:
     """Report phrases of a row that an earlier row also has: the first of equal matches wins.
 
-    A row that has no other phrases is left to the rule that reports answers which are never given.
+    A row without other phrases is left to the rule that reports answers that are never given.
     """
     first: dict[tuple[str, Form], tuple[int, NodePath]] = {}
     for i in range(rows):

@@ -1,4 +1,4 @@
-"""Transitions that wait for approval: whether their event comes from outside the behaviour, and may wait."""
+"""Transitions that wait for approval: whether their event comes from outside the behaviour, and can wait."""
 
 from collections.abc import Iterator
 

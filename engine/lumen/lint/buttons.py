@@ -1,4 +1,4 @@
-"""Buttons: whether pressing one has an effect, and whether two share a key."""
+"""Buttons: whether pressing a button has an effect, and whether two buttons share a key."""
 
 from collections.abc import Iterator
 

@@ -74,7 +74,7 @@ def _joined(schemas: list[Mapping[str, Any]]) -> Mapping[str, Any]:
 
 
 def _answer_schema(machine: MachineDefinition, row: Hears) -> Mapping[str, Any]:
-    """Return the schema of `heard.answer`; it includes null if a name of the row is not one of `answers`."""
+    """Return the schema of `heard.answer`; it includes null if a name of the row has no table under `answers`."""
     values = [answer.value for name in row.names for answer in machine.answers.get(name, ())]
     kinds = {"string" if is_text_by_language(value) else schema_of(value)["type"] for value in values}
     if any(name not in machine.answers for name in row.names) or not values:

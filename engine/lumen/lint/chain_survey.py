@@ -77,7 +77,7 @@ class ChainSurvey:
         return self._in(region)[1]
 
     def _in(self, region: str) -> tuple[list[Transition], bool]:
-        """Return the transitions in a region with an event, and whether an `exit` there raises or sends an event."""
+        """Return a region's transitions with an event, and whether any `exit` there raises or sends an event."""
         if region not in self._inside:
             rows, speaks, waiting = list[Transition](), False, [region]
             while waiting:

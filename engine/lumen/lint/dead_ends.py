@@ -209,7 +209,7 @@ class _Ways:
             state = self.machine.states[state.parent] if state.parent is not None else None
 
     def leaving(self, parallel: State) -> list[Transition]:
-        """Return the transitions below a parallel state that lead out of it: each of them leaves all its regions."""
+        """Return the transitions below a parallel state that lead out of it: each leaves all regions of the state."""
         if parallel.path not in self.exits:
             self.exits[parallel.path] = [
                 transition
@@ -227,7 +227,7 @@ class _Ways:
             waiting.extend(self.machine.states[path].children)
 
     def from_where(self, path: str) -> list[tuple[NodePath, str]]:
-        """Return the related place of the only transition that enters a state; empty if there are several."""
+        """Return the related place of the only transition that enters a state; empty if there is none, or several."""
         ways = self.entered.get(path, [])
         return [(ways[0].where, "it is entered only from here")] if len(ways) == 1 else []
 
@@ -238,7 +238,7 @@ class _Ways:
         self.report(DEAD_END, state.where, message, hint, key=True, related=self.from_where(path))
 
     def lost(self, track: State, home: State, lost: list[str], dead: Iterable[str]) -> None:
-        """Report states from which no transitions lead to `home`; of states that are connected, only the first."""
+        """Report states from which no transitions lead to `home`; of connected states, report only the first."""
         ends = [("in", path) for path in dead]
         ends += [("in", p) for p in track.children if self.machine.states[p].kind is StateKind.FINAL]
         ended = spread(ends, self.graph.before)

@@ -52,7 +52,7 @@ def _reload(machine: MachineDefinition, report: DocumentReport) -> None:
 
 
 def _ways(machine: MachineDefinition, report: DocumentReport) -> None:
-    """Report a `reenter` without effect, keys of a state that `always` leaves at once, and `onError` without `do`."""
+    """Report a `reenter` without effect, keys of a state that `always` leaves immediately, `onError` without `do`."""
     for state in machine.states.values():
         for transition in state.transitions:
             path = (*transition.where, "reenter")

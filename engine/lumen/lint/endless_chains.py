@@ -36,7 +36,7 @@ def check(draft: ProjectDraft) -> None:
 def _beginnings(survey: ChainSurvey) -> Iterator[InstantChain]:
     """Yield a chain for each transition of a state in which the machine may rest, and one for its beginning.
 
-    Yields no more once the work exceeds MAX_WORK.
+    It stops when the work exceeds MAX_WORK.
     """
     stays: dict[str | None, bool] = {None: True}
     for state in survey.machine.states.values():  # a parent comes before its children

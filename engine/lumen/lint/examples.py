@@ -181,7 +181,7 @@ class _Examples(HeardRows):
         return f"`{first.event}` of {shown(self.machine.states[first.source])}"
 
     def answers(self) -> None:
-        """Report rows of answers each of whose phrases matches another row of their table."""
+        """Report rows of answers whose phrases all match other rows of the same table."""
         for name in dict.fromkeys(name for row in self for name in row.hears.names if name in self.machine.answers):
             home = declaring_report(self.draft, self.behavior, "answers", name)
             for number in range(len(self.machine.answers[name]) if home and name not in self.looked else 0):

@@ -1,4 +1,4 @@
-"""Everything that can happen next to a behaviour: events, ends of timers, and answers of the robot."""
+"""Everything that can happen next to a behaviour: events, ends of timers, and the robot's answers."""
 
 from collections.abc import Iterator, Mapping
 from enum import StrEnum
@@ -83,7 +83,7 @@ class HeardTransition(NamedTuple):
 
 
 class StimulusFinder:
-    """The stimuli of snapshots; `events` are those from outside, each with the JSON Schema of its data."""
+    """Finds the stimuli of snapshots; `events` are those from outside, each with the JSON Schema of its data."""
 
     def __init__(self, machine: MachineDefinition, events: Mapping[str, Any]) -> None:
         self._machine, self._events = machine, events
@@ -290,5 +290,5 @@ def _awaited(snapshot: Snapshot) -> Iterator[str]:
 
 
 def _is_wait(id: str) -> bool:
-    """Return whether an id is that of a `wait`, which ends with its timer."""
+    """Return whether an id belongs to a `wait`, which ends with its timer."""
     return id.startswith("w")

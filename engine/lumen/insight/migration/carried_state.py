@@ -140,7 +140,7 @@ def _delays(node: StateNode) -> dict[str, int | Template]:
 
 
 def _afters(node: StateNode, image: StateNode) -> list[tuple[str, int | Template, bool]]:
-    """Return the events and delays of a new state's `after`, and whether each delay is an old one; those come first."""
+    """Return the events and delays of a new state's `after`, and whether each delay is unchanged; those come first."""
     before = list(_delays(node).values())
     found = []
     for event, delay in _delays(image).items():

@@ -97,7 +97,7 @@ class _Migration:
         return context
 
     def _translated(self) -> tuple[ExecutionContext, tuple[str, ...]]:
-        """Return the context under the new machine, before anything is entered, and notes about what was lost."""
+        """Return the context under the new machine, before any state is entered, and notes about lost values."""
         before, situation, kept = self.before, self.situation, self.placement.kept
         data, notes = carried_state.context(self.old.chart, self.new.chart, before.data, situation.identity)
         spoken, language = situation.options.languages, before.language

@@ -105,7 +105,7 @@ def place(new: Chart, active: frozenset[StateNode], identity: Identity, history:
 
 
 class _Placing:
-    """The states that stay, during the search for a legal configuration."""
+    """Searches for a legal configuration with the states that stay."""
 
     def __init__(self, new: Chart, active: frozenset[StateNode], identity: Identity) -> None:
         self.new, self.active = new, active
@@ -184,7 +184,7 @@ class _Placing:
 
 
 def is_legal(chart: Chart, active: Iterable[StateNode]) -> bool:
-    """Return whether states form a configuration (SCXML 3.11): one child of a compound state, all of a parallel one."""
+    """Return whether states form a configuration: one child of each compound, all of each parallel state (SCXML 3.11)."""
     known = set(active)
     counts = {node: sum(child in known for child in node.children) for node in known}
     needed = {node: {StateKind.COMPOUND: 1, StateKind.PARALLEL: len(node.children)}.get(node.kind, 0) for node in known}

@@ -27,7 +27,7 @@ class MigrationPlan(NamedTuple):
     notes: tuple[str, ...] = ()
     """Sentences about changes that an operator might miss: the new state, or forgotten values."""
     sent: tuple[Event, ...] = ()
-    """Events that an invoked behaviour sends to its host meanwhile."""
+    """Events that an invoked behaviour sends to its host during the migration."""
 
     @property
     def commands(self) -> tuple[Command, ...]:
@@ -51,7 +51,7 @@ class Refusal(NamedTuple):
     reason: str
     """Why the behaviour can't continue."""
     hint: str = ""
-    """A hint on how to fix it."""
+    """A hint on how to fix the files."""
     state: str = ""
     """The name of the active state that is gone or has ended; empty for any other reason."""
     behavior: str = ""

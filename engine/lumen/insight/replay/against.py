@@ -123,7 +123,7 @@ def _words(said: Mapping[str, Any]) -> str:
 
 
 class OtherPlay:
-    """The play of the other files with a simulated robot."""
+    """Plays a visit with the other files and a simulated robot."""
 
     def __init__(self, project: Project, takes: Duration) -> None:
         self._project, self._takes = project, takes

@@ -59,11 +59,11 @@ class JournalJump(NamedTuple):
     position: int
     """The entry's position in the journal."""
     kind: JumpKind
-    """The reason."""
+    """The reason for the jump."""
     at: float
-    """The time [s]."""
+    """The time of the jump, on the exhibition's clock [s]."""
     bundle: str
-    """The hash of the bundle."""
+    """The hash of the bundle that runs from here on."""
     behavior: str
     """The name of the behaviour in the bundle."""
     snapshot: Mapping[str, Any] | None

@@ -1,4 +1,4 @@
-"""The replay of a journal: entries and bundles in, compared steps out."""
+"""Replays a journal: takes its steps again, and compares them with the record."""
 
 import json
 from collections.abc import Callable, Iterable, Iterator
@@ -44,7 +44,7 @@ class ReplayedStep(NamedTuple):
     """An entry with its step taken again."""
 
     entry: RecordedEntry
-    """The entry."""
+    """The recorded entry."""
     machine: MachineDefinition | None = None
     """The machine that ran; None if its files were not kept."""
     before: Snapshot | None = None
@@ -56,7 +56,7 @@ class ReplayedStep(NamedTuple):
     now: StepOutcome | None = None
     """The result of the replay; None if there is nothing to compare."""
     unknown: str = ""
-    """Why the step can't be taken: the state is unknown, or a visitor's data was deleted from the entry."""
+    """Why the step can't be taken: the state is unknown, or a visitor's data was deleted; empty if it can."""
 
     @property
     def differs(self) -> bool:
@@ -80,7 +80,7 @@ def replay(entries: Iterable[RecordedEntry], machines: MachineSource) -> Iterato
 
 
 class Replayer:
-    """The replay of a journal, entry by entry."""
+    """Replays a journal, entry by entry."""
 
     def __init__(self, machines: MachineSource) -> None:
         self._machines, self._digest = machines, StepDigest()

@@ -40,7 +40,7 @@ class RecordedVisit(NamedTuple):
     inputs: tuple[JournalInput, ...] = ()
     """The events from `home` on."""
     whole: bool = False
-    """Whether the behaviour came back home and no entry is missing."""
+    """Whether the behaviour returned home and no entry is missing."""
     redacted: bool = False
     """Whether a visitor's data was deleted from the visit."""
 
@@ -60,7 +60,7 @@ def waiting_state(machine: MachineDefinition) -> str:
 
 
 class VisitWatch:
-    """The assignment of entries to visits; pass each entry to `take` in order."""
+    """Assigns entries to visits; pass each entry to `take` in order."""
 
     def __init__(self) -> None:
         self._homes: dict[tuple[str, str], str] = {}
