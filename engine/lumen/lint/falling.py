@@ -40,7 +40,7 @@ def check(draft: ProjectDraft) -> None:
 def _walks(machine: MachineDefinition, report: DocumentReport) -> None:
     """Report states that walk and can't be left after an error or a delay: the robot stays there if the walk fails."""
     led: dict[str | None, bool] = {None: False}
-    """Whether a transition leads on from a state, or from a state around it."""
+    """Whether a transition of a state, or of a state around it, leads on after a failure or a delay."""
     for path, state in machine.states.items():  # a parent comes before its children
         led[path] = led[state.parent] or any(map(_leads_on, state.transitions))
         walk = next((step for step in nested(state.do) if isinstance(step.action, GoTo | Walk)), None)

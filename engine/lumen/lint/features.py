@@ -8,7 +8,7 @@ from lumen.project.draft import ProjectDraft
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report each installed package with a feature, or a row of one, that is ignored."""
+    """Report each installed package that has an ignored feature, or a feature with an ignored row."""
     draft.loose += broken_features()
     for feature, where in _imported():
         if distribution_of(feature):

@@ -90,7 +90,7 @@ def _simple(node: ExpressionNode) -> bool:
 
 
 def _late(machine: MachineDefinition, state: State, report: DocumentReport) -> None:
-    """Report candidates that are never taken, or not for all their phrases, because of an earlier one."""
+    """Report candidates that are never taken, or not for all their phrases, because of an earlier candidate."""
     earlier: list[Transition] = []
     heard = any(transition.hears for transition in state.transitions)
     candidates = sorted(state.transitions, key=_turn) if heard else state.transitions
@@ -155,7 +155,7 @@ def covers(earlier: Transition, later: Transition) -> bool:
 
 
 def _takes_all(earlier: Transition, later: Transition, machine: MachineDefinition, report: DocumentReport) -> bool:
-    """Report a transition that an earlier one makes partly or wholly unreachable; return True if it is wholly so."""
+    """Report a transition that an earlier one makes partly or wholly unreachable; return True if wholly."""
     related = [(earlier.where, "the earlier one is here")]
     if earlier.guard is None:
         if report.broken(earlier.where):  # the unreadable part may have been its guard

@@ -76,7 +76,7 @@ class TriedSentences:
         self.answers: dict[tuple[str, str], int | None] = {}
         """By a table of answers and a sentence: the row that answers it; None if no row does."""
         self.slots: frozenset[str] | None = None
-        """The names that have a phrase made only of slots; None if they were not looked for."""
+        """The names that have a phrase made only of slots; None before they are searched for."""
 
 
 class HeardRows:

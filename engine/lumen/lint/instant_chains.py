@@ -52,7 +52,7 @@ class InstantChain:
     survey: ChainSurvey
     """The data that all chains of the machine share."""
     depth: int = MAX_INVOKED
-    """The depth of invoked behaviours that may still be followed."""
+    """The depth of invoked behaviours that can still be followed."""
     active: set[str] = field(default_factory=set)
     """The paths of the active states."""
     begun: set[str] = field(default_factory=set)
@@ -156,7 +156,7 @@ class InstantChain:
         return True
 
     def take(self, transitions: Sequence[Transition], event: str) -> None:
-        """Take these transitions in one step; of two that conflict, only the inner or else the earlier one."""
+        """Take these transitions in one step; of two conflicting transitions, only the inner, else the earlier."""
         kept: list[Transition] = []
         for transition in transitions:
             self.survey.spend(len(kept) // STATES_PER_WORK)
@@ -213,7 +213,7 @@ class InstantChain:
                 self.internal += (f"done.do.{state.name}",)
 
     def _end(self, final: State) -> None:
-        """Raise the events of the states that end with a final one: its parent, and the parallel states around it."""
+        """Raise the events of the states that end with a final state: its parent, and parallel states around it."""
         path = final.parent or ""
         while self.machine.states[path].kind is not StateKind.PARALLEL or self._is_final(path):
             state = self.machine.states[path]

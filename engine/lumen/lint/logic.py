@@ -59,7 +59,7 @@ def always(condition: ExpressionNode) -> bool:
 
 
 def implies(condition: ExpressionNode, other: ExpressionNode) -> bool:
-    """Return whether the other condition is certainly true whenever the first one is; False if that is unknown."""
+    """Return whether `other` is certainly true whenever `condition` is; False if that is unknown."""
     return never(condition, Unary("!", other))
 
 

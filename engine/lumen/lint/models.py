@@ -84,7 +84,7 @@ class _ModelReader:
     seen: set[str] = field(default_factory=set)
     """The models that have been read."""
     around: list[str] = field(default_factory=list)
-    """The models under way, the outermost first."""
+    """The models that are being read, the outermost first."""
 
     def read(self, name: str) -> list[ModelElement]:
         """Return the elements of a model; empty if it can't be read."""

@@ -1,4 +1,4 @@
-"""Motions: the demands of the movement between keys on the robot's joints."""
+"""Checks the movement of motions between keys against the limits of the robot's joints."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
@@ -20,7 +20,7 @@ from lumen.project.units import JointUnits, joint_units
 TOO_FAST = Code("too-fast", "motions", ERROR, "a joint would have to move faster than it can")
 
 
-"""Gestures that are too fast have this code as well."""
+"""Gestures that are too fast also have this code."""
 
 
 def check(draft: ProjectDraft) -> None:
@@ -117,7 +117,7 @@ def _too_far(report: DocumentReport, excess: Excess, units: JointUnits, body: Bo
 
 
 def _shown(excess: Excess, units: JointUnits, body: Body) -> tuple[float, float]:
-    """Return value and limit in the file's unit, rounded to as many digits as make them differ."""
+    """Return value and limit in the file's unit, rounded to the fewest digits that keep them different."""
     factor = units.factor(excess.joint, body)
     value, limit = excess.value / factor, excess.limit / factor
     digits = next((d for d in range(1, 6) if round(value, d) != round(limit, d)), 6)

@@ -27,9 +27,9 @@ class Named(NamedTuple):
     """The names that a behaviour uses."""
 
     keys: frozenset[str] | None
-    """Keys of the context; None if an expression may read any of them."""
+    """Keys of the context; None if an expression can read any key."""
     lists: frozenset[str] | None
-    """Lists; None if an expression may read any of them."""
+    """Lists; None if an expression can read any list."""
     texts: frozenset[str]
     """All texts in quotes, the names in rows of `hears`, and the lists of the slots of phrases."""
 
@@ -47,7 +47,7 @@ def named_in(machine: MachineDefinition) -> Named:
 
 
 def looked_up(draft: ProjectDraft) -> set[str]:
-    """Return the tables of answers that are arguments of `lookup` in expressions: their first row that matches wins."""
+    """Return the tables of answers that are arguments of `lookup` in expressions; their first matching row wins."""
     calls = (
         node.arguments[-1]
         for machine in draft.behaviors.values()

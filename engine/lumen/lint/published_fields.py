@@ -1,4 +1,4 @@
-"""Fields of published bodies that the schema of the route does not have."""
+"""Fields of published bodies that the route's schema does not have."""
 
 from collections.abc import Mapping
 
@@ -10,7 +10,7 @@ from lumen.project.draft import ProjectDraft
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report fields that a schema forbids, or whose name is almost that of a described field."""
+    """Report fields that a schema forbids, and fields that probably misspell a described field."""
     routes = draft.settings.routes if draft.settings else {}
     for name, machine in draft.behaviors.items():
         for site in action_sites(machine):

@@ -37,7 +37,7 @@ def recipients(draft: ProjectDraft, name: str, send: Send) -> list[MachineDefini
 
 
 def sent_to(draft: ProjectDraft, machine: MachineDefinition) -> set[str]:
-    """Return the events that other behaviours send to this one."""
+    """Return the events that any behaviour sends to this behaviour."""
     return {
         send.event
         for name, other in draft.behaviors.items()

@@ -184,7 +184,7 @@ class _Placing:
 
 
 def is_legal(chart: Chart, active: Iterable[StateNode]) -> bool:
-    """Return whether states form a configuration: one child of each compound, all of each parallel state (SCXML 3.11)."""
+    """Return whether states form a configuration (SCXML 3.11): one child of a compound, all of a parallel state."""
     known = set(active)
     counts = {node: sum(child in known for child in node.children) for node in known}
     needed = {node: {StateKind.COMPOUND: 1, StateKind.PARALLEL: len(node.children)}.get(node.kind, 0) for node in known}

@@ -37,7 +37,7 @@ class FileText:
         return self.lines[number - 1] if 0 < number <= len(self.lines) else ""
 
     def at(self, place: Place) -> str:
-        """Return the text at a place within one line; empty if the place spans several."""
+        """Return the text at a place within one line; empty if the place spans several lines."""
         one = place.line == place.end_line
         return self.line(place.line)[place.column - 1 : place.end_column - 1] if one else ""
 
@@ -54,7 +54,7 @@ class FileText:
 
 
 def edited(content: bytes, edits: Sequence[Edit]) -> bytes:
-    """Return the file after these edits; of two that overlap, only the one that begins later in the file is made."""
+    """Return the file after these edits; of two overlapping edits, only the later in the file is made."""
     source = FileText("", content)
     spans = [(source.offset(*e.place[1:3]), source.offset(*e.place[3:5]), e.text) for e in dict.fromkeys(edits)]
     text, done = source.text, len(source.text) + 1

@@ -22,9 +22,9 @@ def spaces(diagnostic: Diagnostic, source: FileText) -> list[Fix]:
 
 
 def once(diagnostic: Diagnostic, source: FileText) -> list[Fix]:
-    """Return a fix that deletes one of two equal lines; no fix if both have different comments.
+    """Return a fix that deletes one of two equal lines; no fix if both have different comments, or inner lines.
 
-    If only one line has a comment, the other one is deleted.
+    If only one line has a comment, the other line is deleted.
     """
     number = diagnostic.place.line
     line = source.line(number)
