@@ -1,4 +1,4 @@
-"""The route table: keys, schemas, events."""
+"""Checks the route table: keys, schemas and events."""
 
 from collections.abc import Collection, Iterator, Mapping
 
@@ -43,7 +43,7 @@ _FORMED = {JPEG_TYPE: IMAGE, FLOATS_TYPE: JOINT}
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report the faults of each row of the route table."""
+    """Report faults of the rows in the route table, and missing rows."""
     settings, report = draft.settings, draft.main
     if settings is None or report is None:
         return
@@ -158,7 +158,7 @@ def _moves_joints(draft: ProjectDraft, action: object) -> bool:
 def _ways(draft: ProjectDraft, report: DocumentReport, route: Route) -> None:
     """Report an outgoing route with an event, and an incoming command route without a time limit.
 
-    A command that is performed late is worse than one that is lost.
+    A command that is performed late is worse than a lost command.
     """
     if route.direction is Direction.OUT and route.event:
         message = f"messages on this route go out, so they can't become the event `{route.event}`"

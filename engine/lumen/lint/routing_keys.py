@@ -18,7 +18,7 @@ NEAR_KEY = Code("near-key", "routes", WARNING, "a routing key is almost the same
 MAX_ROUTING_KEY_BYTES = 255
 """The length limit of a routing key (AMQP 0-9-1, 3.1.1: a short string)."""
 NEAR = 0.8
-"""The similarity (difflib's ratio) from which a first word counts as a misspelt prefix of Lumen's."""
+"""The least similarity (difflib's ratio) at which a key's first word counts as a misspelt prefix of Lumen."""
 
 _WORD = re.compile(r"[^\s.*#{}]+|\{robot\}")
 
@@ -90,7 +90,7 @@ def _owners(settings: Settings) -> Mapping[str, str]:
 
 
 def _shared(report: DocumentReport, route: Route, settings: Settings) -> None:
-    """Report a key without `{robot}` if robots share a broker, because the message must say which robot it is about."""
+    """Report a key without `{robot}` if robots share a broker, because a message's key must then name its robot."""
     ours = route.name in DEFAULT_KEYS
     if settings.aliases is not False or "{robot}" in route.key or not (ours or route.event):
         return

@@ -128,10 +128,10 @@ def _conjunction(node: Antecedent) -> frozenset[Proposition]:
 
 
 def _order(block: RuleBlock, controller: ControllerDefinition, first: Rule, second: Rule) -> tuple[Rule, Rule]:
-    """Return two rules with the same condition: first the one whose condition is probably wrong, then the other one.
+    """Return two rules with the same condition: the rule whose condition is probably wrong, then the other rule.
 
-    Rules usually follow the order of the terms. The first rule is the wrong one if a term without a rule fits in its
-    place, else the second.
+    Rules usually follow the order of the terms. The first rule is wrong if a term without a rule fits in its place,
+    else the second.
     """
     asked = first.antecedent
     if isinstance(asked, Proposition) and (variable := controller.inputs.get(asked.variable)):
@@ -193,7 +193,7 @@ def _cell(rule: Rule) -> Mapping[str, str]:
 
 
 def _others(block: RuleBlock, output: str, found: list[tuple[Rule, Mapping[str, str]]]) -> bool:
-    """Return whether rules of another form also conclude that output, because these may fill the gaps."""
+    """Return whether rules of another form also conclude that output, because these can fill the gaps."""
     cells = {id(rule) for rule, _ in found}
     return any(
         id(rule) not in cells and any(consequent.variable == output for consequent in rule.consequents)
@@ -210,7 +210,7 @@ def _absent(output: str, names: list[str], gaps: list[tuple[str, ...]], last: Ru
 
 def _unused(controller: ControllerDefinition, report: DocumentReport) -> None:
     if any(diagnostic.code == CONTRADICTING_RULE for diagnostic in report.diagnostics):
-        return  # one of the two was meant for the unused term
+        return  # one of the contradicting rules was probably meant for the unused term
     asked = {(p.variable, p.term) for rule in controller.rules for p in propositions(rule.antecedent)}
     asked |= {(p.variable, p.term) for rule in controller.rules for p in rule.consequents}
     for side, variables in (("checks", controller.inputs), ("concludes", controller.outputs)):

@@ -63,7 +63,7 @@ def _refused(report: DocumentReport, machine: MachineDefinition, saying: Saying)
 
 
 def _named(machine: MachineDefinition) -> set[str]:
-    """Return the names of phrases and answers; those of the phrases in a list's entries are not included."""
+    """Return the names of phrases and answers; the names of phrases in list entries are left out."""
     return {*machine.phrases, *machine.answers}
 
 

@@ -1,4 +1,4 @@
-"""JSON Schemas inside behaviours, of context keys and of events, and the initial values of the context."""
+"""Checks the JSON Schemas of context keys and events in behaviours, and the context's initial values."""
 
 from lumen.project.context import check_memory
 from lumen.project.draft import ProjectDraft

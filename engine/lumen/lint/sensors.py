@@ -1,4 +1,4 @@
-"""Sensors of the robot in guards, `event.data.sensor == 'FrontTactil'`, and those that open the ears."""
+"""Tactile sensors in guards, as in `event.data.sensor == 'FrontTactil'`, and in `listens` of the ears."""
 
 from collections.abc import Iterator
 

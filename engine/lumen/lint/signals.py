@@ -68,7 +68,7 @@ UNIT_MISMATCH = Code(
 VOLUME: Mapping[str, Any] = {"type": "number", "minimum": 0, "maximum": 1, "description": "How loud the robot speaks."}
 
 _UNIT = re.compile(r"\[([^\]\s]+)\]")
-"""The unit in the description of a field: `Nearest echo on the left [m].`"""
+"""Matches the unit in a field's description: `Nearest echo on the left [m].`"""
 
 
 def check(draft: ProjectDraft) -> None:
@@ -129,7 +129,7 @@ def _context(
 ) -> Mapping[str, Any] | None:
     """Return the schema of the bound context key; None if no behaviour declares it.
 
-    An undeclared key is reported unless an unreadable part of a behaviour may declare it.
+    An undeclared key is reported, unless an unreadable part of a behaviour could declare it.
     """
     path = (*binding.where, "context")
     declared = {
@@ -223,7 +223,7 @@ def _lacks(draft: ProjectDraft, report: DocumentReport, controller: ControllerDe
 
 
 def _twice(draft: ProjectDraft) -> None:
-    """Report two outputs with the same target, in one controller or in two that are never switched off."""
+    """Report two outputs with the same target, in one controller or in two controllers that are never switched off."""
     forever = _never_off(draft)
     bound = [
         (name, signal, target)

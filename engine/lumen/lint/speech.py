@@ -96,7 +96,7 @@ def check(draft: ProjectDraft) -> None:
 
 
 def _heard_tables(draft: ProjectDraft) -> set[str]:
-    """Return the tables of answers that only rows of `hears` use: in these the longest match wins, not the first row.
+    """Return the tables of answers that only rows of `hears` use, in which the longest match wins, not the first row.
 
     If a behaviour can't be read, every table that the other behaviours do not look up is included.
     """
@@ -194,7 +194,10 @@ class _Speech:
             self.texts(report, path, {language: text for language, text in texts.items() if language not in parts})
 
     def phrases(self, tables: WordTables) -> None:
-        """Report names of phrases that lack a language of the project; names that lack the same one share a cause."""
+        """Report names of phrases that lack a language of the project; names that lack the same language share a cause.
+
+        Word lists, and phrases for every language, are exempt.
+        """
         for name, phrases in tables.phrases.items():
             if name in WORD_LISTS:
                 continue
@@ -207,7 +210,7 @@ class _Speech:
                     tables.report(MISSING_LANGUAGE, ("phrases", name), message, hint, key=True, cause=cause)
 
     def switches(self, draft: ProjectDraft, silent: Collection[str]) -> None:
-        """Report languages that no behaviour switches to, if behaviours switch to others."""
+        """Report languages that no behaviour switches to, if behaviours switch to other languages."""
         assert draft.main
         switched = switched_to(draft)
         spoken = switched | {story.language for story in draft.stories.values() if story.language}
@@ -222,7 +225,7 @@ class _Speech:
                 draft.main(UNREACHABLE_LANGUAGE, path, message, hint)
 
     def texts(self, report: DocumentReport, path: NodePath, texts: Mapping[str, Any]) -> None:
-        """Report a text by language that lacks one of the languages, is empty in one, or has an unknown one."""
+        """Report a text by language that lacks a language, is empty in a language, or has an unknown language."""
         self.each(report, path, texts)
         self.empty(report, path)
         said = {language for language in texts if not _is_rest(report, (*path, language))} | _written(report, path)
@@ -235,7 +238,7 @@ class _Speech:
             report(MISSING_LANGUAGE, path, message, f"add `{missing[0]}:` with the text", key=True)
 
     def split(self, report: DocumentReport, path: NodePath, texts: Mapping[str, Any]) -> set[str]:
-        """Report texts that YAML splits at a comma, each once; return the keys that are parts of them."""
+        """Report texts that YAML splits at a comma, each once; return the keys that are parts of these texts."""
         wholes = {key: whole_text(report.document, (*path, key), by_language=True) for key in texts}
         for key, whole in wholes.items():
             if whole:
@@ -296,7 +299,7 @@ def _listed(names: list[str]) -> str:
 
 
 def _late(report: DocumentReport, table: str, rows: Sequence[Answer]) -> None:
-    """Report rows of an answers table each of whose phrases contains a phrase of an earlier row, which wins."""
+    """Report rows of an answers table whose phrases all contain phrases of earlier rows, which win."""
     for i, row in enumerate(rows[:MAX_COMPARED_ROWS]):
         phrases = [phrase for texts in row.phrases.values() for phrase in texts]
         takers = [next((j for j in range(i) if is_taken(p, rows[j].phrases)), None) for p in phrases]

@@ -136,7 +136,7 @@ def _loops(machine: MachineDefinition, report: DocumentReport) -> None:
 def _rounds(
     machine: MachineDefinition, onward: Onward, begin: str, path: str, way: tuple[Transition, ...]
 ) -> Iterator[tuple[Transition, ...]]:
-    """Yield the loops of at most MAX_ALWAYS_LOOP transitions back to `begin` whose guards can all be true at once.
+    """Yield the loops of at most MAX_ALWAYS_LOOP transitions back to `begin` whose guards can all be true together.
 
     `way` has the transitions from `begin` to `path`.
     """

@@ -50,7 +50,7 @@ def _cut(
 def duration(block: Iterable[PlacedAction], motions: Mapping[str, MotionDefinition]) -> float:
     """Return the minimum duration of these actions in sequence [s]; among alternative texts, the longest counts.
 
-    Unknown durations, such as of an expression's text or of a walk's turn, count as 0.
+    Unknown durations, such as those of an expression's text or of a walk's turn, count as 0.
     """
     return sum(_one(step, motions) for step in block)
 

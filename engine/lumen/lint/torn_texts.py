@@ -49,7 +49,7 @@ def _cut(report: DocumentReport) -> None:
 
 
 def _torn(report: DocumentReport) -> None:
-    """Report lists of sentences in which one has no final mark and the next one begins with a lowercase letter."""
+    """Report lists of sentences in which a text has no final mark and the next begins with a lowercase letter."""
     lines = lines_of(report.document.text)
     lists: dict[NodePath, list[str]] = {}
     for path in report.document.spans:

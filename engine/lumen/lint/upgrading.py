@@ -1,4 +1,4 @@
-"""Files of an older vocabulary, rewritten word by word for a newer one: a pure function from files to files."""
+"""Rewrites files of an older vocabulary for a newer vocabulary: a pure function from files to files."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import PurePosixPath

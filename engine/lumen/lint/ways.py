@@ -78,7 +78,7 @@ def _ways(
 
 
 def _followers(machine: MachineDefinition) -> set[tuple[str, PlacedWalk]]:
-    """Return pairs of a place, or the start, and a walk that may be the next one from there.
+    """Return pairs of a place, or the start, and a walk that can be the next walk from there.
 
     Guards are ignored. After a walk to a computed place the position is unknown, so there are no pairs for it.
     """

@@ -19,7 +19,7 @@ _NEEDED = {
     NEGATIONS: (NEGATIONS, NEGATIONS_AFTER),
     QUESTIONS: (QUESTIONS,),
 }
-"""The lists that each language needs; of several in a row, one is enough."""
+"""The lists that each language needs; of several lists in a row, one is enough."""
 
 
 def check(draft: ProjectDraft) -> None:

@@ -19,7 +19,7 @@ class WordTables(NamedTuple):
 
     report: DocumentReport
     phrases: Mapping[str, Mapping[str, tuple[str, ...]]]
-    """The phrases of each name by language; the empty language is every language."""
+    """The phrases of each name by language; an empty language means every language."""
     answers: Mapping[str, tuple[Answer, ...]]
     """The rows of each table of answers."""
     lists: Mapping[str, tuple[Mapping[str, Any], ...]]
@@ -37,7 +37,7 @@ class WrittenPhrase(NamedTuple):
 
 
 def word_tables(draft: ProjectDraft) -> Iterator[WordTables]:
-    """Yield the tables of each behaviour and each words file; borrowed tables are not part of a behaviour's own."""
+    """Yield the tables of each behaviour and each words file; a behaviour's borrowed tables are left out."""
     for name, machine in draft.behaviors.items():
 
         def own(key: str, table: Mapping[str, Any], borrowed: Any = machine.borrowed) -> dict[str, Any]:
