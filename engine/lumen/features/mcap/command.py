@@ -138,7 +138,7 @@ def _record(options: argparse.Namespace, reached: Reached, span: float | None) -
 
 
 def _wait(bus: Bus, tape: FileTape, span: float | None) -> None:
-    """Wait until the time is over, Ctrl-C is pressed, the disk fails, or the exhibition ends."""
+    """Wait until `span` [s] is over, Ctrl-C is pressed, the disk fails, or the exhibition ends."""
     began, ends = time.monotonic(), bus.ability(EndsWithExhibition)
     with suppress(KeyboardInterrupt), progress() as tell:
         while not tape.trouble and not (ends and ends.gone.is_set()):

@@ -16,7 +16,7 @@ from lumen.run.forgetting.files import attempt, await_others
 def forget_recordings(folder: Path, name: str, found: Forgetting) -> None:
     """Remove a person from all recordings in a project's state folder and those noted there; add results to `found`.
 
-    A recording that another process is writing is left to that process, and reported if the name stays.
+    A recording that another process is writing is left to that process, and reported if it still contains the name.
     """
     recordings, held = RecordingsFolder(folder), Home(folder).held()
     person = PersonName(name, map(name_key, found.others))

@@ -24,7 +24,7 @@ NOTES = "lumen"
 
 def notes_of(project: Project) -> RecordedNotes:
     """Return the metadata about the exhibition, its robot and its files, valid from now on."""
-    from importlib.metadata import version  # it imports the email package, and few runs record
+    from importlib.metadata import version  # imports the email package, which only recordings need
 
     said = {
         "exhibition": project.name,

@@ -26,7 +26,7 @@ WRITE_PERIOD = 0.1
 FORGETTING_SPACING = 2.0
 """The time between two removals of names [s]: each rewrites files."""
 FORGETTING_SPAN = 10.0
-"""The time for which a forgotten name is also removed from new messages [s]: the request to forget contains it."""
+"""The time for which a forgotten name is also removed from new messages [s], because the request contains it."""
 MAX_FORGOTTEN = 100
 """The maximum number of names that are removed at a time."""
 FORGOTTEN_ROUTE, IMAGE_ROUTE = "forgotten", "image"

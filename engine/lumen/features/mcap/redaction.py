@@ -30,7 +30,7 @@ class Redaction(NamedTuple):
     files: int = 0
     """The number of attached files that name the person."""
     pictures: int = 0
-    """The number of pictures and sounds that may contain the person."""
+    """The number of pictures and sounds that can contain the person."""
 
     def __bool__(self) -> bool:
         return any(self)

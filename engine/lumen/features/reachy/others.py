@@ -15,7 +15,7 @@ from lumen.features.reachy.pose import distance
 from lumen.upkeep.threads import WatchedThread
 
 LOOK_PERIOD = 0.4
-"""The period in which Lumen polls the daemon for its moves [s]."""
+"""The period with which Lumen polls the daemon for its moves [s]."""
 STRAY_ANGLE, STRAY_PLACE = radians(14), 0.014
 """Something else moves the head if it is farther than this from all targets of the last LATELY seconds [rad], [m]."""
 LATELY = 0.5

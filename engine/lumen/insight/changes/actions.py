@@ -35,8 +35,8 @@ def block_changes(
 ) -> Iterator[Change]:
     """Yield the changes between two versions of a block of actions.
 
-    `title` names the owner of the block, `when` says when it runs (` on entering`, or empty). Each change has in
-    `where` the path of the new action, or of the old one if the action was removed.
+    `title` names the block's owner; `when` is the time at which it runs, such as ` on entering`, or empty. Each
+    change's `where` is the path of the new action, or of the old action if it was removed.
     """
     places = {id(step.action): step.where for step in (*old, *new)}
     for one, other in paired([s.action for s in old], [s.action for s in new], lambda action: type(action).__name__):
@@ -55,7 +55,7 @@ def _pair(old: Action | None, new: Action | None, title: str, when: str, file: s
 
 
 def paired(old: Sequence[T], new: Sequence[T], sort: Callable[[T], object]) -> Iterator[Pair[T]]:
-    """Yield the differences between two sequences as pairs (before, after); None is a missing item.
+    """Yield the differences between two sequences as pairs (before, after); None stands for a missing item.
 
     Items that are equal and in place are not yielded. If the sequences differ, items are paired in order; if one side
     is longer, an item whose `sort` differs from its partner's is yielded as removed or added instead.

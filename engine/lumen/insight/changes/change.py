@@ -18,7 +18,7 @@ class Risk(IntEnum):
     MOTION = 2
     """Keyframes and head control: the robot moves differently."""
     WIRING = 3
-    """Routes and message schemas: other modules have to match."""
+    """Routes and message schemas: other modules must match."""
     RESTART = 4
     """The robot's model, the hall, the stage, the broker: takes effect only at the next start."""
 

@@ -76,11 +76,11 @@ RESTART_FIELDS: Mapping[str, str] = {
     "bus": "the broker's address",
     "modules": "the settings of the modules",
 }
-"""Fields of `Project` whose changes take effect only at the next start, with their names for people."""
+"""Fields of `Project` whose changes take effect only at the next start, with their names in messages."""
 
 
 def live(old: Project, new: Project) -> Project:
-    """Return the new bundle, but with the old values of everything that needs a restart, such as `RESTART_FIELDS`."""
+    """Return the new bundle with the old values of everything that needs a restart, such as `RESTART_FIELDS`."""
     fixed = {name: getattr(old, name) for name in RESTART_FIELDS}
     verbs = {name: row._replace(robot=old.robot) for name, row in new.verbs.items()}
     return replace(new, **fixed, verbs=verbs, sections=live_sections(old, new))

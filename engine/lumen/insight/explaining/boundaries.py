@@ -107,7 +107,7 @@ def _mentioned(machine: MachineDefinition, tree: ExpressionNode, scope: Scope) -
 
 
 def _compared(sign: str, one: ExpressionNode, other: ExpressionNode, scope: Scope) -> Iterator[tuple[ValuePath, Any]]:
-    """Yield values of the paths in `one` for which it would equal `other`, or nearly so."""
+    """Yield values of the paths in `one` that make `one` equal, or nearly equal, to `other`."""
     paths = list(_paths(one))
     if not paths:
         return

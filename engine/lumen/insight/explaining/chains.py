@@ -248,7 +248,7 @@ class Chain:
         return Link(kind, text, one.step.snapshot.epoch + one.at, place, id, values or {}, number)
 
     def _refusal(self, number: int, id: str) -> str:
-        """Return the reason why a command was refused, as the end of a text; empty if it was not refused."""
+        """Return the reason if a command was refused because the robot is held, as the end of a text; else empty."""
         for one in self.history.steps[number + 1 :] if id else ():
             answer = answer_of(one.step.event) if one.step.event and not one.step.event.sendid else None
             if answer and answer.id == id:
@@ -260,7 +260,7 @@ class Chain:
 
 
 def _responsible(machine: MachineDefinition, step: TracedMicrostep, deed: Deed | None, state: str) -> Transition | None:
-    """Return the transition of a microstep that ran an action or led into a state; None without any transition."""
+    """Return the transition that most likely ran an action or entered a state; None if the microstep has none."""
     taken = step.transitions
     if deed:
         within = [t for t in taken if not deed.block and deed.where[: len(t.where)] == t.where]

@@ -53,7 +53,7 @@ def directly_needed(history: StepHistory, number: int) -> Iterator[int]:
 
 
 def _last(history: StepHistory, number: int, made: Callable[[RecordedStep], bool]) -> int:
-    """Return the last earlier step for which `made` is true, else 0."""
+    """Return the number of the last earlier step for which `made` is true, else 0."""
     return next((n for n in reversed(range(number)) if made(history.steps[n])), 0)
 
 

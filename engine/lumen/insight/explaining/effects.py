@@ -1,4 +1,4 @@
-"""The subject of a question, and the links of the chain from that effect to its cause."""
+"""The effect that a question is about, and the links of the chain from the effect to its cause."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
@@ -65,7 +65,7 @@ class Effect(NamedTuple):
 
 
 def effect(history: StepHistory, what: str) -> Effect:
-    """Return the last time that `what` happened; if `what` is empty, the last thing that happened.
+    """Return the last effect that `what` names; if `what` is empty, the last effect of all.
 
     Raises UsageError, with a hint, if the history does not contain it.
     """

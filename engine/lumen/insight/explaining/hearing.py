@@ -21,7 +21,7 @@ class HeardRow(NamedTuple):
     transition: Transition
     """The transition of the row."""
     row: Hears
-    """The row."""
+    """The row as written in the file."""
     fate: RowFate
     """Why the row is taken or not."""
     words: str = ""

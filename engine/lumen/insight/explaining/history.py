@@ -24,11 +24,11 @@ class RecordedStep(NamedTuple):
     """
 
     machine: MachineDefinition
-    """The machine of the step."""
+    """The machine that took the step."""
     before: Snapshot | None
     """The snapshot before the step; None for the first step of a run."""
     step: Step
-    """The step."""
+    """The step, with its event, commands and new snapshot."""
     project: Project | None = None
     """The bundle, which has the places in files; None for a machine without a bundle."""
 

@@ -40,7 +40,7 @@ class IgnoredEvent(NamedTuple):
     """An event that changed nothing."""
 
     event: Event
-    """The event."""
+    """The event that had no effect."""
     deaf: tuple[str, ...]
     """The innermost active states that do not listen to the event, although other states of their regions do."""
     refused: tuple[FalseGuard, ...]

@@ -24,7 +24,7 @@ class ShownButton(NamedTuple):
     """A button of an active state."""
 
     button: Button
-    """The button."""
+    """The button as the behaviour defines it."""
     state: str
     """The outside name of the button's state."""
     key: str

@@ -17,7 +17,7 @@ class TriedSaying(NamedTuple):
     file: str
     """The file of the saying, relative to the project."""
     saying: Saying
-    """The saying."""
+    """The saying, with its expected row and slots."""
     took: str
     """The key of the row that matches it; empty if no row does."""
     wrong: str

@@ -17,7 +17,7 @@ Changed = Callable[[Recorded], Recorded | None]
 def rewrite(
     sources: Sequence[Path], target: Path, changed: Changed = lambda item: item, more: Iterable[Recorded] = ()
 ) -> int:
-    """Write the sources' readable items, as `changed` returns them, then `more`, to `target`; count the messages.
+    """Write the sources' readable items, as `changed` returns them, then `more`, to `target`; return the message count.
 
     The target, which can be one of the sources, is replaced only after everything is written. Raises RecordingError if
     a source is not a recording, or the disk fails.
