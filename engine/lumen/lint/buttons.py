@@ -52,7 +52,7 @@ def _dead(button: Button, machines: tuple[MachineDefinition, ...], report: Docum
 
 
 def _answered(machine: MachineDefinition, state: State, event: str, others: tuple[MachineDefinition, ...]) -> bool:
-    """Return whether a state active together with this one, or another behaviour, reacts to the event."""
+    """Return whether a state that is active together with `state`, or another behaviour, reacts to the event."""
     if any(hears(d, event) for other in others for d in descriptors(other)):
         return True
     return any(

@@ -142,7 +142,7 @@ def transition_domain(machine: MachineDefinition, transition: Transition) -> str
 
 
 def sends_event(block: Sequence[PlacedAction], to: str = "") -> bool:
-    """Return whether a block raises or sends an event; with `to`, only those sent to that recipient count."""
+    """Return whether a block raises or sends an event; with `to`, only events sent to that recipient count."""
     actions = [step.action for step in nested(tuple(block))]
     return any(isinstance(a, Send) and a.to == to if to else isinstance(a, Raise | Send) for a in actions)
 

@@ -119,7 +119,7 @@ class _Graph:
 
 
 def spread(begin: Iterable[GraphNode], moves: dict[GraphNode, list[GraphNode]]) -> set[GraphNode]:
-    """Return all nodes that a sequence of moves reaches from these, including these."""
+    """Return the nodes in `begin`, and all nodes that a sequence of moves reaches from these."""
     found = set(begin)
     waiting = list(found)
     while waiting:

@@ -23,7 +23,7 @@ STEP = 0.02
 
 
 class PlaceOnGround(NamedTuple):
-    """The robot's position [m] and its turn to the left [rad], both from its start."""
+    """The robot's position [m] and its turn to the left [rad], both relative to its start."""
 
     x: float = 0.0
     y: float = 0.0
@@ -71,7 +71,7 @@ def check(draft: ProjectDraft) -> None:
 class _Ways:
     """Follows the routes on which a behaviour can lead the robot from its start, each until it repeats a walk.
 
-    Guards are assumed to hold. After a walk that may be interrupted, or that another behaviour may request, the robot's
+    Guards are assumed to hold. After a walk that can be interrupted, or that another behaviour can request, the robot's
     position is unknown: nothing is reported for later walks.
     """
 
@@ -113,7 +113,7 @@ class _Ways:
     def _begun(
         self, steps: Sequence[PlacedAction], pose: PlaceOnGround | None, made: set[NodePath]
     ) -> Generator[Stray, None, PlaceOnGround | None]:
-        """Follow actions that run without a wait; return the robot's pose, None (unknown) if one of them is a walk."""
+        """Follow actions that run without a wait; return the robot's pose, None (unknown) if any action is a walk."""
         after = yield from self._block(steps, pose, made)
         return None if any(_moves(steps)) else after
 
@@ -164,7 +164,7 @@ class _Ways:
             at = self._machine.states[at].parent
 
     def _within(self, state: State) -> Iterable[str]:
-        """Return the states that are entered with a state; none if several of them may walk at the same time."""
+        """Return the states that are entered with a state; none if several can walk at the same time."""
         if state.kind is not StateKind.PARALLEL:
             return state.initial
         if state.path not in self._entered:
@@ -172,7 +172,7 @@ class _Ways:
         return self._entered[state.path]
 
     def _walks(self, path: str) -> bool:
-        """Return whether an action or an invoked behaviour in a state may make the robot walk."""
+        """Return whether an action or an invoked behaviour in a state can make the robot walk."""
         state = self._machine.states[path]
         blocks = (state.entry, state.do, state.exit, *(t.actions for t in state.transitions))
         return (

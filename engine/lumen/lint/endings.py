@@ -34,7 +34,7 @@ def _begins(descriptor: str, name: str) -> bool:
 
 
 def _able(machine: MachineDefinition, family: str) -> set[str] | None:
-    """Return the states or invokes that can raise an event of a family; None if the family is not about either."""
+    """Return the states or invokes that can raise an event of a family; None for any other family."""
     states = machine.states.values()
     match family:
         case "done.state":
@@ -47,7 +47,7 @@ def _able(machine: MachineDefinition, family: str) -> set[str] | None:
 
 
 def _ends(machine: MachineDefinition, state: State) -> bool:
-    """Return whether a state can come to its end (`isInFinalState` of SCXML)."""
+    """Return whether a state can end (`isInFinalState` of SCXML)."""
     children = [machine.states[path] for path in state.children]
     if state.kind is StateKind.PARALLEL:
         return all(_ends(machine, child) for child in children if child.kind is not StateKind.HISTORY)

@@ -170,7 +170,7 @@ class _Examples(HeardRows):
         )
 
     def hiding(self, outer: str) -> str:
-        """Describe a transition that handles every sentence if all inner states have one; else return an empty text."""
+        """Return a description of a transition that handles every sentence, if all leaves have one; else empty."""
         takers = [
             next((t for state in self.between(leaf, outer) for t in state.transitions if _takes_all(t)), None)
             for leaf in self.leaves(outer)

@@ -1,4 +1,4 @@
-"""Expressions: their names and types, against the declared context and the messages' schemas."""
+"""Checks names and types in expressions against the declared context and the messages' schemas."""
 
 import json
 import re

@@ -1,4 +1,4 @@
-"""Guards that are always or never true, and transitions that are never taken because of an earlier one."""
+"""Guards that are always or never true, and transitions that are never taken because of an earlier transition."""
 
 from collections.abc import Iterator
 from functools import lru_cache
@@ -38,7 +38,7 @@ class HeardCall(NamedTuple):
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report constant guards, and candidates that an earlier one makes wholly or partly unreachable."""
+    """Report constant guards, and candidates that an earlier candidate makes wholly or partly unreachable."""
     for name, machine in draft.behaviors.items():
         report = draft.report("behaviors", name)
         for guard in dict.fromkeys(spot.text for spot in expression_sites(machine) if spot.guard):
@@ -138,7 +138,7 @@ def _turn(transition: Transition) -> int:
 
 
 def covers(earlier: Transition, later: Transition) -> bool:
-    """Return whether the earlier transition is selected by every event that selects the later one; guards do not count.
+    """Return whether every event that selects `later` also selects `earlier`; guards do not count.
 
     A row of `hears` covers only other candidates of the same row, because phrases decide between rows. `*` and `done`
     also match the end of a `do`, of nested states and of an invoked behaviour; they do not match the end of a timer.

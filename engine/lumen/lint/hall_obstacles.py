@@ -28,9 +28,9 @@ class Obstacle(NamedTuple):
     """
 
     x: float
-    """The x of the centre [m]."""
+    """The x coordinate of the centre [m]."""
     y: float
-    """The y of the centre [m]."""
+    """The y coordinate of the centre [m]."""
     yaw: float
     """The turn to the left [rad]."""
     length: float
@@ -54,7 +54,7 @@ class _Frame(NamedTuple):
     y: float = 0.0
     z: float = 0.0
     yaw: float | None = 0.0
-    """Unknown (None) if the body is also turned about an axis other than the vertical."""
+    """The turn [rad]; None (unknown) if the body is also turned about an axis other than the vertical."""
 
 
 def obstacles(content: bytes) -> tuple[Obstacle, ...]:

@@ -21,7 +21,7 @@ SHADOWED_QUESTION = Code(
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report questions that match a row which does not answer them, in each state whose `else` leads to an `ask`."""
+    """Report questions that match a row that does not answer them, in each state whose `else` leads to an `ask`."""
     files = [passage.file for passage in draft.knowledge.values()]
     for name in hearing_behaviors(draft) if files else ():
         remembered(draft, ("heard questions", name), name, files, None, _Questions(draft, name).check)

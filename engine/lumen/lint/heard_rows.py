@@ -26,7 +26,7 @@ MAX_EXAMPLES = 5_000
 
 
 class SaidRow(NamedTuple):
-    """A row of `hears`: its state, and its candidates, of which the first with a true guard is taken."""
+    """A row of `hears`: its state and its candidates; the first candidate with a true guard is taken."""
 
     state: State
     candidates: tuple[Transition, ...]
@@ -169,7 +169,7 @@ class HeardRows:
         return [state for state in self.around(leaf) if within(state.path, outer) and state.path != outer]
 
     def leaves(self, outer: str) -> list[str]:
-        """Return the paths of the atomic states in a state; only itself if it is atomic."""
+        """Return the paths of the atomic states in a state; only its own path if it is atomic."""
         states = self.machine.states.values()
         return [state.path for state in states if state.kind is StateKind.ATOMIC and within(state.path, outer)]
 

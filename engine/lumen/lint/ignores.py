@@ -38,7 +38,7 @@ class Ignore(NamedTuple):
 def obey(
     diagnostics: Iterable[Diagnostic], documents: Mapping[str, Document], codes: Mapping[str, Code]
 ) -> tuple[Diagnostic, ...]:
-    """Return the findings without the ignored ones, and with faults of the ignore comments, by file and line."""
+    """Return the findings that are not ignored, and the faults of ignore comments, by file and line."""
     found = list(diagnostics)
     comments = [c for d in documents.values() if "ignore" in d.text for c in comments_of(d)]
     if not comments:
@@ -52,7 +52,7 @@ def obey(
 
 
 def comments_of(document: Document) -> Iterator[Ignore]:
-    """Yield the ignore comments of a document; similar text inside a value is not one."""
+    """Yield the ignore comments of a document; similar text inside a value is not a comment."""
     lines = lines_of(document.text)
     for number, line in enumerate(lines, 1):
         if (match := _COMMENT.search(line)) and not _in_text(document, number, match.start() + 1):

@@ -27,10 +27,10 @@ MAX_STEPS = 1000
 """The maximum number of a chain's events and transitions that are followed, as in the engine."""
 
 STATES_PER_WORK = 10
-"""The number of states, regions or actions looked at that count as one visit."""
+"""The number of examined states, regions or actions that count as one visit."""
 
 EVENTS_PER_WORK = 100
-"""The number of waiting events copied that count as one visit."""
+"""The number of copied waiting events that count as one visit."""
 
 MAX_INVOKED = 4
 """The maximum depth to which invoked behaviours are followed."""
@@ -274,7 +274,7 @@ class InstantChain:
         return False
 
     def _note(self, block: Sequence[PlacedAction]) -> None:
-        """Add the events of a block to those that wait, and record whether it changes the context."""
+        """Add a block's events to the waiting events, and record whether the block changes the context."""
         steps = list(nested(tuple(block)))
         self.survey.spend(len(steps) // STATES_PER_WORK)
         if any(isinstance(step.action, Assign) for step in steps):

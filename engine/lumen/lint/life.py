@@ -42,7 +42,7 @@ def check(draft: ProjectDraft) -> None:
 
 
 class _Judge:
-    """Yields the faults of one style; `units` are those of its file."""
+    """Yields the faults of one style; `units` are the units of its file."""
 
     def __init__(self, style: LifeStyle, body: Body, units: JointUnits) -> None:
         self._style, self._body, self._units = style, body, units

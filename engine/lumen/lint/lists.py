@@ -1,4 +1,4 @@
-"""Lists of entries, in which every entry has the same keys."""
+"""Checks that the entries of a list have the same keys, and describes lists by JSON Schemas."""
 
 from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
@@ -43,7 +43,7 @@ def listed_texts(
 def is_torn(report: DocumentReport, path: NodePath, value: Mapping[str, Any], entries: Entries) -> bool:
     """Return whether a map in a list is a text by language that YAML has split at a colon or comma.
 
-    Then the map has parts of the text as keys beside the languages. Such a key without a value is certain. One with a
+    Then the map has parts of the text as keys beside the languages. Such a key without a value is certain. A key with a
     value counts if it can't be a name, or if other entries have a text by language in this place and none has a map
     with the same key.
     """

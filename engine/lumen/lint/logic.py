@@ -1,4 +1,4 @@
-"""Static evaluation of conditions: whether one is never true, always true, or implied by another.
+"""Static evaluation of conditions: whether a condition is never true, always true, or implied by another.
 
 A condition is expanded to alternatives, each a set of claims about single values: that a value is true, equal to
 something, or less than a number. An alternative with contradicting claims is impossible. Parts that are not understood
@@ -143,7 +143,7 @@ def _agree(claims: list[Claim]) -> bool:
 def _bound(claims: list[Claim], strict: str, loose: str, start: float) -> tuple[float, bool]:
     """Return the tightest bound on one side, and whether the bound itself is allowed.
 
-    The lower bound if `start` is negative, else the upper one.
+    It is the lower bound if `start` is negative, else the upper bound.
     """
     bounds = [(c.value, c.sign == loose) for c in claims if c.sign in (strict, loose) and is_number(c.value)]
     values = [start, *(value for value, _ in bounds if isinstance(value, int | float))]

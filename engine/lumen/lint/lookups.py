@@ -25,7 +25,7 @@ UNKNOWN_STORY = Code("unknown-story", "references", ERROR, "a name refers to a s
 
 
 def first(report: DocumentReport, *paths: NodePath) -> NodePath:
-    """Return the first of these paths that is in the document, else the last: a value may have a short form."""
+    """Return the first of these paths that is in the document, else the last, because a value can have a short form."""
     return next((path for path in paths if path in report.document.spans), paths[-1])
 
 

@@ -40,15 +40,15 @@ class ModelFault(NamedTuple):
     """A reason why a model can't be read."""
 
     line: int
-    """The line, from 1."""
+    """The line of the fault, from 1."""
     column: int
-    """The column, from 1."""
+    """The column of the fault, from 1."""
     length: int
     """The number of characters to mark."""
     message: str
     """The fault, in words."""
     hint: str
-    """The remedy."""
+    """The remedy, in words."""
 
 
 class _EnoughError(Exception):
@@ -114,7 +114,7 @@ def _too_many(name: str, attributes: Mapping[str, str]) -> str:
 
 
 def _number(word: str) -> float:
-    """Return the number in a word; 1.0 for any other word, because MuJoCo reports those."""
+    """Return the number in a word; 1.0 for any other word, because MuJoCo reports such words."""
     try:
         return float(word)
     except ValueError:

@@ -42,7 +42,7 @@ def check(draft: ProjectDraft) -> None:
 
 
 def _excesses(motion: MotionDefinition, body: Body) -> tuple[tuple[Excess, ...], tuple[Excess, ...]]:
-    """Return the points at which a joint is too fast, and those at which it goes too far."""
+    """Return the points at which a joint is too fast, and the points at which it exceeds its limits."""
     course = Trajectory(motion)
     return tuple(overspeed(motion, body, course)), tuple(beyond_limits(motion, body, course))
 
@@ -50,7 +50,7 @@ def _excesses(motion: MotionDefinition, body: Body) -> tuple[tuple[Excess, ...],
 def _by_key(fast: Iterable[Excess]) -> list[list[Excess]]:
     """Return the excesses of each keyframe, the worst first.
 
-    They are combined because a keyframe that comes too soon does so for all its joints.
+    They are combined, because a keyframe that comes too soon is too soon for all its joints.
     """
     keys: dict[NodePath, list[Excess]] = {}
     for excess in sorted(fast, key=lambda e: -e.value / e.limit):
@@ -85,7 +85,7 @@ def _too_fast(report: DocumentReport, excesses: Sequence[Excess], units: JointUn
 
 
 def more_time(factor: float) -> str:
-    """Return in words how much longer a movement must last that is `factor` times too fast.
+    """Return in words how much more time a movement needs if it is `factor` times too fast.
 
     The value is rounded up to two digits.
     """

@@ -31,7 +31,7 @@ class Named(NamedTuple):
     lists: frozenset[str] | None
     """Lists; None if an expression can read any list."""
     texts: frozenset[str]
-    """All texts in quotes, the names in rows of `hears`, and the lists of the slots of phrases."""
+    """All texts in quotes, the names in rows of `hears`, and the types of slots, which can be lists."""
 
 
 def named_in(machine: MachineDefinition) -> Named:

@@ -47,7 +47,7 @@ def _to_do(value: Any) -> Any:
 def beside(
     report: DocumentReport, text: FileText, around: NodePath, last: NodePath, entry: str, dash: str = ""
 ) -> Edit:
-    """Return the edit that writes an entry after the last one: on the same line if in brackets, else on a new line."""
+    """Return the edit that writes an entry after `last`: on the same line if in brackets, else on a new line."""
     spans = report.document.spans
     whole, end = spans[around].value, spans[last].value
     if text.line(whole.line)[whole.column - 1 : whole.column] in ("{", "["):

@@ -1,4 +1,4 @@
-"""Phrases as patterns: those that can't be read, those written for other tools, and slots that nothing can fill."""
+"""Phrases as patterns: invalid patterns, patterns written for other tools, and slots that nothing can fill."""
 
 import re
 from collections.abc import Iterator
@@ -156,7 +156,7 @@ def _foreign(phrase: WrittenPhrase) -> None:
 def _separator(phrase: WrittenPhrase) -> str:
     """Return the character that separates alternatives in one text; empty if the text is a single phrase.
 
-    A single comma in an entry of a list may belong to a sentence, because the author already separates phrases by the
+    A single comma in an entry of a list can belong to a sentence, because the author already separates phrases by the
     list.
     """
     text = phrase.text

@@ -9,7 +9,7 @@ STILL_THERE = Code("still-there", "statecharts", ERROR, "`renamed` names a state
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report entries whose old name still exists; two states or keys may exchange their names."""
+    """Report entries whose old name still exists; two states or keys can exchange their names."""
     for name, machine in draft.behaviors.items():
         _check(machine, draft.report("behaviors", name))
 

@@ -36,7 +36,7 @@ def repaired(
 ) -> tuple[ProjectFiles, list[Repair]]:
     """Return the files with every fix of a wanted finding that improves them, and the repairs that were made.
 
-    An improvement removes the finding and adds none. All fixes are tried together; if they fail together, each half of
+    An improvement removes the finding and adds no other. All fixes are tried together; if that fails, each half of
     them is tried separately, and so on.
     """
     found, done = check(files), list[Repair]()

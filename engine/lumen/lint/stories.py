@@ -29,7 +29,7 @@ UNKNOWN_SENSOR = Code("unknown-sensor", "references", ERROR, "the robot has no t
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report states, context keys, motions, routes, sensors and events that a story names and that do not exist."""
+    """Report states, context keys, motions, routes, sensors and events that a story names but that do not exist."""
     references = References(draft)
     for name, story in draft.stories.items():
         _Script(draft, references, draft.report("behaviors/stories", name), story).check()

@@ -39,7 +39,7 @@ class SurfaceSamples(NamedTuple):
     """The samples of a controller's surface."""
 
     slices: list[Slice]
-    """Each output over one input, the other inputs being neutral."""
+    """Each output over each input, with the other inputs neutral."""
     steps: list[tuple[Slice, SurfaceJump]]
     """The slices with a jump of more than STEP_SHARE, and the jump."""
     neutral_inputs: dict[str, float]
@@ -53,7 +53,7 @@ class SurfaceSamples(NamedTuple):
 
 
 def sample_surface(controller: ControllerDefinition) -> SurfaceSamples:
-    """Return samples of a controller's surface."""
+    """Sample a controller's outputs over each input, over combinations of inputs, and at rest."""
     survey = Survey(controller)
     slices = list(survey.slices())
     smooth = [
@@ -77,7 +77,7 @@ def sample_surface(controller: ControllerDefinition) -> SurfaceSamples:
 
 
 def _corners(controller: ControllerDefinition) -> Iterator[dict[str, float]]:
-    """Yield combinations of the inputs, if several inputs affect one output; none if there would be too many."""
+    """Yield combinations of the inputs, if several inputs affect one output; none if there are too many."""
     names = [n for n, v in controller.inputs.items() if abs(v.minimum) < 1e300 and abs(v.maximum) < 1e300]
     points, most = CORNERS
     while len(names) > 1 and points > 1 and points ** len(names) > most:

@@ -1,4 +1,4 @@
-"""The duration of a `do`, and whether its state is left earlier."""
+"""Estimates the duration of a `do`, and reports states that are left earlier."""
 
 from collections.abc import Iterable, Mapping
 from contextlib import suppress

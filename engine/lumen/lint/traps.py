@@ -31,12 +31,12 @@ _PAIRS = {"“": "”", "”": "”", "„": "“”", "‘": "’", "«": "»"}
 _DATA = ("context", "data", "body", "robot")
 _HALF = re.compile(r"(?<!\{)\$?\{\s*((?:context|event|state)\.[\w.]+)\s*\}(?!\})")
 _SIGNS = re.compile(r"(?:<|%|\[)\s*((?:context|event|state)\.[\w.]+)\s*(?:>|%|\])")
-"""A placeholder for a value of Lumen in another program's brackets."""
+"""Matches a placeholder for a value of Lumen in another tool's brackets."""
 _OF_OTHERS = re.compile(
     r"\{%.*?%\}|\{#.*?#\}|[$#]\{\s*(?P<certain>\w+)\s*\}|(?<!\{)\{\s*(?P<braces>[^\W\d]\w*)\s*\}(?!\})"
     r"|%\((?P<percent>\w+)\)s|%(?P<signs>\w+)%|\$(?P<dollar>\w+)|<(?P<angles>\w+)>|\[(?P<square>\w+)\]"
 )
-"""A placeholder or a condition in the form of Python, JavaScript, Jinja, Liquid or a shell."""
+"""Matches a placeholder or a condition in the form of Python, JavaScript, Jinja, Liquid or a shell."""
 _BARE = re.compile(r"(?:context|event\.data)\.\w+(?:\.\w+)*")
 
 

@@ -22,7 +22,7 @@ class _Text(NamedTuple):
 
     @property
     def key(self) -> tuple[str, str]:
-        """The language and the words, which equal questions have in common."""
+        """The language and the words, which are the same for equal questions."""
         return self.language, words_of(self.said)
 
 

@@ -80,7 +80,7 @@ def _unread(draft: ProjectDraft, tables: WordTables, name: str, reads: Reads) ->
     read = {key for user, row in rows for key in reads[user].get(row.number, ())}
     known = {key for user, row in rows for key in caught_schema(draft.behaviors[user], row).get("properties", ())}
     if not rows or not read <= known:
-        return  # a row reads all of `heard`, or a slot that does not exist, which may be a misspelt one
+        return  # a row reads all of `heard`, or a slot that does not exist and may be misspelt
     paths = [("phrases", name), *(("answers", name, i, "phrases") for i in range(len(tables.answers.get(name, ()))))]
     phrases = (phrase for path in paths for phrase in written_phrases(tables.report, path))
     sound = (p for p in phrases if "{" in p.text and not any(is_broken(draft.behaviors[u], p.text) for u in users))

@@ -15,7 +15,7 @@ from lumen.project.yaml_reader import parse
 
 
 class Rewriting(NamedTuple):
-    """A place of a file that is rewritten, with the reason in words and the new text."""
+    """A place in a file to rewrite, with the reason in words and the new text."""
 
     place: Place
     why: str

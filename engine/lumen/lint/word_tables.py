@@ -32,7 +32,7 @@ class WrittenPhrase(NamedTuple):
     report: DocumentReport
     path: NodePath
     language: str
-    """Empty if the phrase is for every language."""
+    """The phrase's language; empty if it is for every language."""
     text: str
 
 
@@ -81,7 +81,7 @@ def _listed(value: Any) -> list[Any]:
 
 
 def known_by(draft: ProjectDraft, report: DocumentReport) -> list[str]:
-    """Return the behaviours that can use the names of a file: its own, or those that name the file under `words`."""
+    """Return the behaviours that can use a file's names: its own behaviour, or all that name it under `words`."""
     folder, _, file = report.document.file.rpartition("/")
     name = file.removesuffix(".yaml")
     return [n for n, m in draft.behaviors.items() if (name in m.words if folder == WORDS_FOLDER else n == name)]

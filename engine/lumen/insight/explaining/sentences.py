@@ -49,7 +49,7 @@ class ExplainedRow(NamedTuple):
     """A row of `hears`, or another transition that waits for a sentence."""
 
     transition: Transition
-    """The transition."""
+    """The row's transition, or the other transition."""
     state: str
     """The name of the transition's state."""
     found: FoundPhrase | None = None

@@ -37,7 +37,7 @@ class Moment(NamedTuple):
     scope: Scope
     """The scope of the guards."""
     place: str
-    """The place in the hall."""
+    """The robot's place in the hall."""
 
     def scope_of(self, node: StateNode) -> Scope:
         """Return the scope in which the expressions of the state `node` were evaluated."""
@@ -82,7 +82,7 @@ class Deed(NamedTuple):
     what: Command | Event | str
     """A command, an event that was raised, or the id of a `send`."""
     where: NodePath
-    """The path of the action in the machine's document; empty if it happened by itself."""
+    """The path of the action in the machine's document; empty if no action caused the deed."""
     state: str
     """The path of the state whose `entry`, `do`, `exit` or transitions contain the action."""
     microstep: TracedMicrostep | None
@@ -103,7 +103,7 @@ class Trace:
     microsteps: list[TracedMicrostep] = field(default_factory=list)
     deeds: list[Deed] = field(default_factory=list)
     step: Step | None = None
-    """The result; None until the step is complete."""
+    """The step that was taken; None until it is complete."""
 
     def entering(self, owner: str, state: str, until: TracedMicrostep | None = None) -> TracedMicrostep | None:
         """Return the last microstep up to `until` that entered the state of that name; None if none did."""

@@ -1,4 +1,4 @@
-"""The parts of steps in words."""
+"""Describes the parts of steps in words."""
 
 import json
 from collections.abc import Mapping

@@ -1,4 +1,4 @@
-"""The rule by which two snapshots count as one: irrelevant parts are left out, and numbers are limited."""
+"""The rule by which two snapshots count as one configuration: irrelevant parts are left out, numbers are limited."""
 
 import re
 from bisect import bisect_left
@@ -25,8 +25,8 @@ class Abstraction:
     """The key of a snapshot; snapshots with equal keys count as one configuration.
 
     Only context keys that can still matter count. A number counts as itself within the range of numbers that the
-    behaviour mentions, else as below or above them all. A text counts as empty, as one that is mentioned, or as
-    another. If the behaviour uses `size`, the lengths of texts, lists and maps count as numbers too.
+    behaviour mentions, else as below or above all of them. A text counts as empty, as a mentioned text, or as another
+    text. If the behaviour uses `size`, the lengths of texts, lists and maps count as numbers too.
 
     Of a `for`, the entry and the number of entries left count; of a history, only the part that it can still restore.
     Times, ids, random numbers and (unless a guard reads it) the language do not count.

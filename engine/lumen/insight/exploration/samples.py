@@ -123,7 +123,7 @@ def _mentioned(
 
 
 def texts_for(machine: MachineDefinition, function: str, text: str) -> list[Any]:
-    """Return texts for which a function with that second argument gives different results."""
+    """Return texts for which a function with that second argument returns different results."""
     match function:
         case "heard":
             return [phrase for texts in machine.phrases.get(text, {}).values() for phrase in texts]

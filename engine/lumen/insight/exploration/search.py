@@ -86,7 +86,7 @@ class StateSpaceSearch:
         self.abstraction = Abstraction(machine)
         self._planner = compiled(machine).planner
         self.nodes: dict[ConfigurationKey, SearchNode] = {}
-        """The configurations found, in that order."""
+        """The nodes found, by the keys of their configurations, in the order in which they were found."""
         self.steps = 0
         """The number of steps taken."""
         self.expanded = 0

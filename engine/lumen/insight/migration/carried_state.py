@@ -24,7 +24,7 @@ _LIST = "lists."
 def carried_round(old: MachineDefinition, new: MachineDefinition, loop: ForEach, value: Mapping[str, Any]) -> Any:
     """Return the value of a `for` key under the new machine: the same entries in their new form.
 
-    Removed entries are skipped, except the present one. A list that is not in `lists` can't be compared, so the value
+    Removed entries are skipped, except the current one. A list that is not in `lists` can't be compared, so the value
     stays the same.
     """
     name = loop.each.source.strip().removeprefix(_LIST)

@@ -48,7 +48,7 @@ def migrated(
 class _Migration:
     """The migration of one snapshot.
 
-    `before` is the context of the old machine, `after` that of the new one, to which `invocations` belong.
+    `before` is the old machine's context; `after` and `invocations` belong to the new machine.
     """
 
     def __init__(self, situation: Situation, placement: Placement) -> None:

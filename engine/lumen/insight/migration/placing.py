@@ -1,4 +1,4 @@
-"""The states that stay, that are left and that are entered, so that the configuration is legal in the new machine."""
+"""Finds the states that stay, are left and are entered, to make the configuration legal in the new machine."""
 
 from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple
@@ -13,7 +13,7 @@ CONTEXT_PREFIX = "context."
 
 
 class Identity:
-    """The mapping of states and context keys from an old machine to a new one.
+    """Maps states and context keys of an old machine to a new machine.
 
     A renaming that the old machine's file already contains was applied before, and does not count. A renamed state
     includes the states below it. With `back`, the new machine ran before, and the old machine's renamings are undone.
@@ -28,7 +28,7 @@ class Identity:
         self._last: Mapping[str, str] = {} if back else again
 
     def state(self, path: str) -> str | None:
-        """Return the path in the new machine; None if the state is gone."""
+        """Return a state's path in the new machine; None if the state was removed."""
         for table in (self._first, {path: path}, self._last):
             for prefix in _prefixes(path):
                 if prefix in table:
@@ -68,7 +68,7 @@ def _prefixes(path: str) -> Iterator[str]:
 
 
 class Placement(NamedTuple):
-    """The states that stay, are left and are entered."""
+    """The places of the active states in a new chart."""
 
     kept: Mapping[StateNode, StateNode]
     """The new state for each old state that stays active."""

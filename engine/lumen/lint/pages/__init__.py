@@ -52,7 +52,7 @@ class Page(NamedTuple):
     """The explanation of a code."""
 
     code: str
-    """The code."""
+    """The code that is explained."""
     what: str
     """The meaning, in Markdown."""
     why: str
