@@ -101,7 +101,7 @@ def _ahead(node: SearchNode) -> int:
 def _cheapest(machine: MachineDefinition, nodes: list[SearchNode], region: str = "") -> dict[str, SearchNode]:
     """Return the cheapest node for each active innermost state, by the state's path.
 
-    With `region`, only the states in it count, unless it is inactive in a node.
+    With `region`, only states in the region count, unless the region is inactive in a node.
     """
     found: dict[str, SearchNode] = {}
     for node in sorted(nodes, key=lambda s: s.cost):

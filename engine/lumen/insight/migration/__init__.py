@@ -1,7 +1,7 @@
 """The migration of a running behaviour to other files: a pure plan, a reason to wait, or a refusal.
 
-`verdicts` has the three results, `placing` maps states and decides which stay and where the others lead, `situation`
-decides whether a `do` under way can continue, and `carried_state` translates context, timers and history.
+`verdicts` has the three results. `placing` decides which states stay and which states follow the others. `situation`
+decides whether a running `do` can continue. `carried_state` translates context, timers and history.
 """
 
 from lumen.insight.migration.migrating import migrated
@@ -19,11 +19,11 @@ def plan(
 ) -> MigrationVerdict:
     """Return how a behaviour of `old` at that snapshot continues under `new` at `at` [s]; nothing is performed.
 
-    Active states keep their identity by path or by `renamed`. A state that still exists is not entered again; its
-    timers count from when they were set, even if their delay has changed, and its actions continue. A state that is
-    gone runs its old exit actions, and the nearest `onReload` around it names the next state (else the result is a
-    Refusal). If a `do` under way is gone or changed, the result is a MigrationDelay; with `now` the `do` is cancelled
-    instead, and a changed one begins anew. If the content is the same, so is the snapshot.
+    Active states keep their identity by path or by `renamed`. A state that still exists is not entered again: its
+    actions continue, and its timers count from when they were set, even if their delay has changed. A removed state
+    runs its old exit actions, and the nearest `onReload` around it names the next state; without one, the result is a
+    Refusal. If a running `do` was removed or changed, the result is a MigrationDelay; with `now`, the `do` is cancelled
+    instead, and a changed `do` begins anew. If the content has not changed, the snapshot does not change either.
 
     `back` is a rollback: `new` ran before `old`, whose renamings are undone. Raises SnapshotError if `old` lacks an
     active state of the snapshot.

@@ -82,7 +82,7 @@ class Unplaced(NamedTuple):
     """A compound state without exactly one active child, for which no `onReload` names another state."""
 
     state: StateNode
-    """The new state."""
+    """The compound state, in the new chart."""
     gone: StateNode
     """The innermost old state that has no place."""
     rivals: tuple[StateNode, ...] = ()
@@ -90,7 +90,7 @@ class Unplaced(NamedTuple):
 
 
 def place(new: Chart, active: frozenset[StateNode], identity: Identity, history: History) -> Placement | Unplaced:
-    """Return the place of an old chart's active states in the new chart; `history` is that of the new chart.
+    """Place an old chart's active states in the new chart, which has `history`; return Unplaced if that fails.
 
     States that stay are not entered again. If a compound state has lost its active child, the nearest `onReload` around
     it decides; a state that had no children before enters its initial state.
@@ -121,9 +121,9 @@ class _Placing:
         return None if found and found.kind is StateKind.HISTORY else found
 
     def _keep(self, leaf: StateNode) -> None:
-        """Keep a leaf and those of its ancestors that still surround it.
+        """Keep a leaf and the ancestors that still surround it.
 
-        If the leaf is gone, keep those around its nearest ancestor that stays.
+        If the leaf was removed, keep its nearest ancestor that stays, and the ancestors around that state.
         """
         chain = [node for node in (leaf, *leaf.ancestors) if node in self.images]
         anchor = next(image for node in chain if (image := self.images[node]) is not None)
@@ -156,7 +156,7 @@ class _Placing:
         return None
 
     def lead(self, empty: StateNode, history: History) -> bool:
-        """Follow the nearest `onReload` around a state, and drop the states in its domain; return False without one."""
+        """Follow the nearest `onReload` around a state, and drop the states in its domain; return False if there is none."""
         source = next((n for n in (empty, *empty.ancestors) if n.state and n.state.on_reload), None)
         if source is None or source.state is None:
             return False
@@ -168,7 +168,7 @@ class _Placing:
         return True
 
     def finish(self, history: History) -> Placement:
-        """Return the placement, completed by the states around, beside and within those that stay."""
+        """Return the placement, completed by the states around, beside and within the states that stay."""
         staying = frozenset(self.kept.values())
         topology = StateSets(self.new, history, staying)
         entered = EntrySet()

@@ -16,8 +16,8 @@ from lumen.statechart.values import Awaiting, Fork, Position, Snapshot, Within
 def can_continue(before: tuple[PlacedAction, ...], after: tuple[PlacedAction, ...], position: Within) -> bool:
     """Return whether a `do` at that position can continue in the new actions.
 
-    The actions already done must have the same verbs. The action under way must be the same, except for texts and the
-    length of a `wait`. Later actions may differ.
+    The completed actions must have the same verbs. The current action must be the same, except for texts and the
+    length of a `wait`. Later actions can differ.
     """
     place = position.place
     if place >= len(after) or _shape(before[:place]) != _shape(after[:place]):
@@ -99,7 +99,7 @@ class Situation:
         return Refusal(reason, hint, gone.name, behavior, state.state.where if state.state else ())
 
     def still_finished(self) -> bool:
-        """Return whether the new machine is at its end as well; the old one has ended."""
+        """Return whether the new machine has ended too, given that the old machine has ended."""
         if isinstance(self.placement, Unplaced) or self.placement.left or self.placement.entered:
             return False
         names = frozenset(node.name for node in self.placement.kept.values() if node.path)
@@ -139,7 +139,7 @@ class Situation:
                 yield MigrationDelay(f"`{id}` is no longer invoked, but is still busy", id)
 
     def changed(self, placement: Placement) -> list[StateNode]:
-        """Return the states that stay, but whose `do` is under way and can't continue."""
+        """Return the states that stay, but whose running `do` can't continue."""
         doing = [(node, image) for node, image in placement.kept.items() if node.path in self.snapshot.doing]
         return [
             node

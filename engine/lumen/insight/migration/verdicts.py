@@ -46,14 +46,14 @@ class MigrationDelay(NamedTuple):
 
 
 class Refusal(NamedTuple):
-    """The behaviour can't continue under the new files."""
+    """A refusal: the behaviour can't continue under the new files."""
 
     reason: str
     """Why the behaviour can't continue."""
     hint: str = ""
     """A hint on how to fix the files."""
     state: str = ""
-    """The name of the active state that is gone or has ended; empty for any other reason."""
+    """The name of the active state that was removed or has ended; empty for any other reason."""
     behavior: str = ""
     """The name of the new behaviour's file."""
     where: NodePath = ()

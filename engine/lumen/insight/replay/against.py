@@ -1,8 +1,8 @@
 """A recorded visit played again with other files, to find the differences in speech and actions.
 
 The behaviour changes to the other files at the moment when it was last at home, as in a reload. Then it receives the
-recorded events at their times. A recorded answer goes to the new command in its place: the same command, or the next of
-its kind. A command without a counterpart takes as long as on the recording robot.
+recorded events at their times. A recorded answer goes to its command's counterpart: the same command, or the next
+command of its kind. A command without a counterpart takes as long as on the recording robot.
 """
 
 import heapq
@@ -29,7 +29,7 @@ Duration = Callable[[Project, BodyCommand], float]
 """A function that returns the duration of a command [s] for which the journal has none."""
 
 GRACE = 120.0
-"""The additional time, beyond the recorded one, that a visit may take to return home [s]."""
+"""The additional time, beyond the recorded time, in which a visit can return home [s]."""
 MORE_STEPS, MOST_TIMES = 20_000, 10
 """The maximum numbers of additional steps of a visit, and of steps per recorded input: other files may never rest."""
 
@@ -67,7 +67,7 @@ def played_against(
     """Return the result of a visit with other files; None if the journal has too little of the visit.
 
     The result is compared with the record, or with the result of the files `beside`. `takes` gives durations that were
-    not recorded. `hurry` is called at each step and may raise to end the play.
+    not recorded. `hurry` is called at each step and can raise an exception to end the play.
     """
     home = visit.home
     if home is None or not visit.inputs or visit.redacted:
@@ -85,7 +85,7 @@ def played_against(
 
 
 def _verdict(play: "OtherPlay", then: list[tuple[float, Any]], trouble: str, home: str) -> VisitVerdict:
-    """Compare a play with another course.
+    """Return the verdict on a play compared with another course, `then`.
 
     `home` is the state in which the other course ended (empty for any state), and `trouble` is its error.
     """
@@ -129,7 +129,7 @@ class OtherPlay:
         self._project, self._takes = project, takes
         self.home, self.steps, self.trouble = waiting_state(project.machine), 0, ""
         self.done: list[tuple[float, Any]] = []
-        """The commands with their times [s]."""
+        """The issued commands as JSON data, with their times [s]."""
         self._asked: list[tuple[Snapshot, Event | None, Command]] = []
         self._counterparts: dict[str, str] = {}
         self._begun: set[str] = set()
@@ -211,7 +211,7 @@ class OtherPlay:
             self._pass(following)
 
     def _pass(self, until: float, *, one: bool = False) -> None:
-        """Process timers and answers up to a time [s], in order; with `one`, only one timer of those due then."""
+        """Process timers and answers up to a time [s], in order; with `one`, only one of the timers due then."""
         while self._answers and self._answers[0][0] <= until:
             at, id, data = heapq.heappop(self._answers)
             self._elapse(at)
@@ -244,7 +244,7 @@ class OtherPlay:
             heapq.heappush(self._answers, (ends, begun[0], usual_result(command.command)))
 
     def _pair(self) -> None:
-        """Find for each recorded command its counterpart among the new ones."""
+        """Find each recorded command's counterpart among the new commands."""
         for parts in (slice(1, 3), slice(1, 2)):  # the same command, then the same kind of command
             for one in list(self._then):
                 other = next((row for row in self._now if one[parts] == row[parts]), None)

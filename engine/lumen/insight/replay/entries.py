@@ -40,7 +40,7 @@ class JournalInput(NamedTuple):
     how: How
     """How the event reached the behaviour."""
     event: Event
-    """The event."""
+    """The event that the behaviour processed."""
     exited: tuple[str, ...] = ()
     """The names of the states that the step left."""
     entered: tuple[str, ...] = ()
@@ -71,7 +71,7 @@ class JournalJump(NamedTuple):
     commands: tuple[Any, ...] = ()
     """The commands that were performed at this point, as JSON data."""
     said: Mapping[str, Any] = {}
-    """Details: the arguments of a start, the person who requested the jump, the number of entries that were lost."""
+    """Details: the arguments of a start, the person who requested the jump, or the number of lost entries."""
     redacted: bool = False
     """Whether a visitor's name was removed because that visitor's data was deleted."""
 

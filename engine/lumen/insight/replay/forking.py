@@ -1,4 +1,4 @@
-"""A fork of a journal at a moment, with another event or other files, compared with the recorded course.
+"""Forks a journal at a moment with another event or other files, and compares the fork with the recorded course.
 
 All other recorded events happen again at their times, as for a visit with other files.
 """
@@ -46,7 +46,7 @@ def fork(
     """Return the fork at the first event from that position on, up to the next jump; keyframes are skipped.
 
     `event` replaces that event; `saved` are other files. `takes` gives durations of commands that were not recorded;
-    `hurry` is called at each step and may raise. Raises LumenError if there is no such event, or if the state of the
+    `hurry` is called at each step and can raise. Raises LumenError if there is no such event, or if the state of the
     behaviour before it is unknown.
     """
     number = next((n for n, entry in enumerate(entries) if entry.position >= position), len(entries))

@@ -72,7 +72,7 @@ class ReplayedStep(NamedTuple):
 def replay(entries: Iterable[RecordedEntry], machines: MachineSource) -> Iterator[ReplayedStep]:
     """Yield each entry with its step, taken again with the bundle that ran then.
 
-    A difference causes further ones until the next keyframe with a snapshot.
+    A difference causes further differences until the next keyframe with a snapshot.
     """
     replayer = Replayer(machines)
     for entry in entries:

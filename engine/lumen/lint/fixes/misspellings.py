@@ -41,7 +41,7 @@ def _count(word: str, files: Mapping[str, bytes]) -> int:
 
 
 def near(word: str, meant: str) -> bool:
-    """Return whether two words differ by one slip: letter case, one letter added, missing or wrong, or two letters exchanged.
+    """Return whether two words differ by one slip: case, one letter added, missing or wrong, or two letters exchanged.
 
     Return False if they could be two different names: short words, words with different first letters or digits.
     """
