@@ -17,7 +17,7 @@ TRANSITIONS_PER_WORK = 10
 class UncertainError(Exception):
     """The next transition can't be predicted: it depends on a guard, a list, or unknown states.
 
-    Also raised if following a chain further would take more than MAX_WORK.
+    It is also raised if following a chain takes more than MAX_WORK.
     """
 
 
@@ -97,7 +97,7 @@ class ChainSurvey:
         return self._rows[path, event]
 
     def timers(self, path: str) -> list[Transition]:
-        """Return the transitions with `after: 0s` of a state, one for each of its timers."""
+        """Return a state's transitions with `after: 0s`, one transition for each timer."""
         if path not in self._timers:
             rows = reversed(self.machine.states[path].transitions)
             names = {t.event: t for t in rows if t.timed and t.delay == 0}

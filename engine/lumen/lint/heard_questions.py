@@ -1,4 +1,4 @@
-"""Questions of knowledge/ that match a row of `hears`, so that they never reach the state that asks."""
+"""Questions of knowledge/ that match a row of `hears`, and therefore never reach the state that asks."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from functools import cached_property

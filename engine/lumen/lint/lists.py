@@ -28,7 +28,7 @@ def check(draft: ProjectDraft) -> None:
 def listed_texts(
     tables: Iterable[WordTables], languages: Collection[str]
 ) -> Iterator[tuple[DocumentReport, NodePath, Mapping[str, Any]]]:
-    """Yield each text or list of phrases in an entry that is given by language, in at least one of these languages."""
+    """Yield each text or list of phrases in an entry that is given by language, in any of these languages."""
     for table in tables:
         for name, entries in table.lists.items():
             for i, entry in enumerate(entries):

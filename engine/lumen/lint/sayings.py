@@ -31,7 +31,7 @@ def check(draft: ProjectDraft) -> None:
 
 
 def _refused(report: DocumentReport, machine: MachineDefinition, saying: Saying) -> set[tuple[str, ...]]:
-    """Report the faults of a saying; return the paths of unknown states and rows, so that each is reported once."""
+    """Report the faults of a saying; return the paths of unknown states and rows, which are reported only once."""
     behavior, state, key = where = saying.behavior, saying.state, saying.row
     try:
         rows = rows_around(machine, path_of(machine, state))

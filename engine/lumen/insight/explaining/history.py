@@ -44,7 +44,7 @@ class RecordedStep(NamedTuple):
 
     @property
     def is_decided(self) -> bool:
-        """Whether the machine decided the step, so that taking it again gives the same result."""
+        """Whether the machine decided the step; taking it again then gives the same result."""
         return not self.is_reload and not (self.step.event and self.step.event.name == OPERATOR_GOTO)
 
     def place(self, machine: MachineDefinition, where: NodePath) -> Place | None:

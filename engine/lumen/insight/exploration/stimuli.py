@@ -189,7 +189,7 @@ def _heard(machine: CompiledMachine, snapshot: Snapshot, name: str) -> Iterator[
 
 
 def _said(heard: tuple[HeardTransition, ...]) -> Iterator[str]:
-    """Yield texts for each row of `hears`, one for each of its names and one more.
+    """Yield texts for each row of `hears`: one text for each of its names, and one more.
 
     If there are texts for which the row is the best of its state, only those are used: "no no problems" is not an
     example of `not fine`.

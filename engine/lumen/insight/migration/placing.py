@@ -156,7 +156,7 @@ class _Placing:
         return None
 
     def lead(self, empty: StateNode, history: History) -> bool:
-        """Follow the nearest `onReload` around a state, and drop the states in its domain; return False if there is none."""
+        """Follow the nearest `onReload` around a state, and drop the states in its domain; return False if none."""
         source = next((n for n in (empty, *empty.ancestors) if n.state and n.state.on_reload), None)
         if source is None or source.state is None:
             return False

@@ -16,7 +16,7 @@ JumpKind = Literal[
 ]
 """The reason why a behaviour continued from a snapshot without a step.
 
-It began, changed to other files (`reload`) or back to earlier ones (`rollback`), continued after a crash (`resume`) or
+It began, changed to other files (`reload`) or back to old files (`rollback`), continued after a crash (`resume`) or
 without a visitor's name (`forget`), lost a timer or an event that it could not process, or entries were lost (`gap`). A
 `keyframe` changes nothing: its `said` has a person's `mark`, or a `note` of an action on the robot with the person
 (`by`).

@@ -1,6 +1,6 @@
 """The extent of a visit: from the step by which the behaviour leaves its home to the step by which it returns.
 
-Home is the innermost state in which a behaviour begins; with regions, the one in the first region in the order of the
+Home is the innermost state in which a behaviour begins; with regions, the innermost state of the first region in the
 file. `lumen test --explore` looks for a way back to the same state.
 """
 
