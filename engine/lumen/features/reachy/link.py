@@ -30,7 +30,7 @@ _log = logging.getLogger(__name__)
 
 
 class LinkChange(NamedTuple):
-    """A change of the connection."""
+    """A loss or a return of the connection."""
 
     name: str
     """`robot.lost` or `robot.back`."""

@@ -247,5 +247,5 @@ class ReachySkills:
 
 
 def _nothing() -> Steps:
-    """End at the first tick."""
+    """Return steps that end at the first tick."""
     yield from ()

@@ -41,7 +41,7 @@ _ENGINE = str(Path(lumen.__file__).parents[1])
 
 
 class _Code(NamedTuple):
-    """The code of a program."""
+    """A program's code, as read from its files."""
 
     stamp: tuple[tuple[str, int, int], ...]
     """The path, time of change [ns] and size [bytes] of each file."""
@@ -71,7 +71,7 @@ class _Bench:
     backoff: Backoff = field(default_factory=lambda: Backoff(FIRST_PAUSE, LONGEST_PAUSE))
     again: float = 0.0
     remote: int = 0
-    """The number of calls that a module performs now."""
+    """The number of calls that a module is performing."""
     crashes: int = 0
     """The number of times that a program ended by itself or was killed."""
     trouble: str = ""

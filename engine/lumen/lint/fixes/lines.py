@@ -22,7 +22,7 @@ def spaces(diagnostic: Diagnostic, source: FileText) -> list[Fix]:
 
 
 def once(diagnostic: Diagnostic, source: FileText) -> list[Fix]:
-    """Return a fix that deletes one of two equal lines; no fix if both have different comments, or inner lines.
+    """Return a fix that deletes one of two equal lines; no fix if both have different comments, or inner lines below.
 
     If only one line has a comment, the other line is deleted.
     """
