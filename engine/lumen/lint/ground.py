@@ -28,7 +28,7 @@ def check(draft: ProjectDraft) -> None:
 
 
 def ground_of(draft: ProjectDraft, hall: str) -> tuple[Obstacle, ...]:
-    """Return the ground of a hall of the project; empty if it is unknown."""
+    """Return the ground of a hall in models/; empty if it is unknown."""
     content = draft.files.get(f"models/{hall}") or draft.lent.get(f"models/{hall}")
     return ground(content) if content else ()
 
@@ -39,7 +39,7 @@ def covered(parts: Iterable[Obstacle], point: GroundPoint) -> bool:
 
 
 def reach(parts: Iterable[Obstacle]) -> str:
-    """Describe the extent of the ground below the start [m]; there must be ground there."""
+    """Return a description of the ground's extent around the start [m]; there must be ground at the start."""
     part = next(part for part in parts if part.distance(GroundPoint(0.0, 0.0)) < 1e-6)
     length, width = part.length + part.round, part.width + part.round
     x, y = (part.x - length, part.x + length), (part.y - width, part.y + width)

@@ -32,7 +32,7 @@ class PlacedWalk(NamedTuple):
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report places and ways that are blocked in the hall of the project."""
+    """Report places and ways that are blocked in the project's hall."""
     if draft.settings is None or draft.main is None:
         return
     named = draft.settings.section(HallPlaces).by_name

@@ -194,7 +194,7 @@ class TracedContext(ExecutionContext):
         self._note(outer_command(command, self.owner) if self.owner else command)
 
     def start(self, command: BodyCommand, *, awaited: bool = False) -> str:
-        """Start a command; if it is `awaited`, no action counts as running afterwards."""
+        """Start a command and return its id; after an `awaited` command, no action counts as running."""
         id = super().start(command, awaited=awaited)
         if awaited:
             self.acting = ()

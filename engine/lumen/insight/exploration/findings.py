@@ -59,7 +59,7 @@ def _restless(machine: MachineDefinition, nodes: list[SearchNode]) -> Iterator[E
 def _dead_ends(
     machine: MachineDefinition, search: StateSpaceSearch, nodes: list[SearchNode]
 ) -> Iterator[ExplorationFinding]:
-    """Yield states that no event, time or answer leaves, unless the machine has ended there."""
+    """Yield a finding for each state that no event, time or answer leaves, unless the machine has ended there."""
     leaving = {s for s in nodes if not s.expanded or s.restless or any(e.names != s.names for e in s.successors)}
     free = reaching(nodes, leaving, inside=True)
     stuck = [s for s in nodes if s not in free and not search.finished(s)]
@@ -76,7 +76,7 @@ def _dead_ends(
 def _no_way_back(
     machine: MachineDefinition, search: StateSpaceSearch, nodes: list[SearchNode], home: str
 ) -> Iterator[ExplorationFinding]:
-    """Yield states from which neither `home` nor the machine's end can be reached any more."""
+    """Yield a finding for each state from which neither `home` nor the machine's end can be reached."""
     goals = {s for s in nodes if home in s.names or not s.expanded or s.restless or search.finished(s)}
     reached = reaching(nodes, goals)
     lost = [s for s in nodes if s not in reached]

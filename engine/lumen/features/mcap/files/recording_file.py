@@ -77,7 +77,7 @@ class RecordingFile:
             os.fsync(self._file.fileno())
 
     def finish(self) -> None:
-        """Write the index and close the file."""
+        """Write the index and close the file. Raises OSError if the disk fails; the file is closed all the same."""
         try:
             self._writer.finish()
             self._file.flush()
