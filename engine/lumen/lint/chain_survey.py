@@ -89,7 +89,7 @@ class ChainSurvey:
         return self._inside[region]
 
     def rows(self, path: str, event: str) -> list[Transition]:
-        """Return the transitions of a state that an event selects."""
+        """Return a state's transitions that an event selects."""
         if (path, event) not in self._rows:
             transitions = self.machine.states[path].transitions
             self.spend(len(transitions) // TRANSITIONS_PER_WORK)

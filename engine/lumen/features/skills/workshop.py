@@ -332,7 +332,7 @@ class Workshop:
             _in_background(process.close)
 
     def _started(self, name: str, bench: _Bench) -> SkillProcess:
-        """Start a program; return its process. Raises RobotFailedError if it can't be started or its code loaded."""
+        """Start a program; return its process. Raises RobotFailedError if it does not start or load its code."""
         skill, code = bench.skill, bench.code
         if skill.kind == "command":
             return SkillProcess(name, skill.target, str(self._root), skill.memory, lambda line: self.tell(name, line))

@@ -46,9 +46,9 @@ def live_sections(old: Project, new: Project) -> dict[str, object]:
 
 
 def _both(old: Project, new: Project, key: str) -> tuple[Any, Any]:
-    """Return a section before and after.
+    """Return a section of the old and of the new project.
 
-    A project that lacks the section has its defaults; if both projects lack it, return None twice.
+    A project that lacks the section has its defaults; if both projects lack it, both values are None.
     """
     before, after = old.sections.get(key), new.sections.get(key)
     if before is None and after is not None:

@@ -55,7 +55,7 @@ def recover(path: Path) -> int | None:
 def reopened(path: Path, changed: Changed) -> RecordingFile:
     """Rewrite a recording with changes; return it, open for further items.
 
-    Raises RecordingError if it is not a recording, OSError if the disk fails.
+    Raises RecordingError if the file is not a recording, OSError if the disk fails.
     """
     draft = path.with_name(f"{path.name}.{os.getpid()}.new")
     written = RecordingFile(draft)
