@@ -34,7 +34,7 @@ def check(draft: ProjectDraft) -> None:
 
 
 def _beginnings(survey: ChainSurvey) -> Iterator[InstantChain]:
-    """Yield a chain for each transition of a state in which the machine may rest, and one for its beginning.
+    """Yield a chain for each transition of a state in which the machine can rest, and a chain for its beginning.
 
     It stops when the work exceeds MAX_WORK.
     """

@@ -63,7 +63,7 @@ def descriptors(machine: MachineDefinition) -> tuple[str, ...]:
 
 
 def declared(draft: ProjectDraft, machine: MachineDefinition) -> dict[str, Any]:
-    """Return the events that can come from outside this machine, with the JSON Schema of their data.
+    """Return the events that can arrive from outside this machine, with the JSON Schemas of their data.
 
     The schema is None if the data can be anything.
     """

@@ -174,7 +174,7 @@ def _separator(phrase: WrittenPhrase) -> str:
 
 
 def _slots(phrase: WrittenPhrase, machines: list[MachineDefinition]) -> None:
-    """Report slots of a phrase that can catch nothing in one of these behaviours, which know the phrase."""
+    """Report slots of a phrase that can catch nothing in any one of `machines`, the behaviours that use the phrase."""
     listed = phrase.path[0] == "lists"
     for slot in slots_of(phrase.text):
         faults = (_fault(slot, machine) for machine in machines)

@@ -49,7 +49,7 @@ def check(draft: ProjectDraft) -> None:
 
 
 def known_place(draft: ProjectDraft, report: DocumentReport, path: NodePath, name: str) -> bool:
-    """Return whether lumen.yaml has that place; if not, report the name, unless an unreadable part may have it."""
+    """Return whether lumen.yaml has that place; if not, report the name, unless an unreadable part could have it."""
     assert draft.settings
     assert draft.main
     places = draft.settings.section(HallPlaces).by_name

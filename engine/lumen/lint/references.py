@@ -31,7 +31,7 @@ def check(draft: ProjectDraft) -> None:
 
 
 def known_route(draft: ProjectDraft, report: DocumentReport, path: NodePath, route: str, *, key: bool = False) -> bool:
-    """Return whether lumen.yaml has that route; if not, report the name, unless an unreadable part may have it."""
+    """Return whether lumen.yaml has that route; if not, report the name, unless an unreadable part could have it."""
     if draft.settings is None or draft.main is None:
         return False
     if route in draft.settings.routes:

@@ -99,5 +99,5 @@ def _hidden(code: str, file: str, before: Sequence[Diagnostic], step: Sequence[R
 
 
 def _what(diagnostic: Diagnostic) -> tuple[str, str, str]:
-    """Return the file, code and message of a finding, without its place and numbers, which an edit may change."""
+    """Return the file, code and message of a finding, without its place and numbers, which an edit can change."""
     return diagnostic.place.file, diagnostic.code, re.sub(r"\d+", "0", diagnostic.message)

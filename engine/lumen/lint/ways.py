@@ -1,4 +1,4 @@
-"""Ways through the hall: places where the robot can't stand, and straight ways through solid objects."""
+"""Ways through the hall: places at which the robot can't stand, and straight ways through solid objects."""
 
 from collections.abc import Iterator, Mapping
 from itertools import pairwise

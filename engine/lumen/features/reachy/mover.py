@@ -7,7 +7,7 @@ from lumen.features.reachy.pose import JOINTS
 from lumen.language.robots import Body
 
 SENT_TOLERANCE = 1e-5
-"""Targets that differ by less than this [rad, m] are not sent again: the daemon holds the last one."""
+"""Targets that differ by less than this [rad, m] are not sent, because the daemon keeps the last target."""
 
 
 class Mover:

@@ -19,7 +19,7 @@ from lumen.run.sound import Sound
 from lumen.upkeep.ratelimit import OnceLog
 
 MUTE = "none"
-"""The voice of a silent robot: a text takes as long as its speech would, and a module on the bus can say it."""
+"""The voice of a silent robot: a text lasts as long as its speech, which a module on the bus can produce."""
 _log = logging.getLogger(__name__)
 
 

@@ -24,7 +24,7 @@ ABSENT = object()
 MAX_VALUES = 24
 """The maximum number of values that are tried for one path."""
 FIRST = 6
-"""The number of values from the guard that are tried before plain values; the others, possibly many, come after."""
+"""The number of values from the guard that are tried before plain values; the remaining values are tried after."""
 
 
 def boundaries(machine: MachineDefinition, sources: Iterable[str], scope: Scope) -> dict[ValuePath, list[Any]]:
@@ -78,7 +78,7 @@ def _kind(value: Any) -> str:
 
 
 def _plain(now: Any) -> list[Any]:
-    """Return a few values of the same kind as the present one."""
+    """Return a few values of the present value's kind; without a value, a few of each kind."""
     match now:
         case bool():
             return [not now]

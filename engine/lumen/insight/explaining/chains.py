@@ -219,7 +219,7 @@ class Chain:
                 return
 
     def _activity(self, number: int, deed: Deed) -> Link:
-        """Return the link that gives the position of an action: `2nd of 3 in the `do` of greet`."""
+        """Return the link with the position of an action: `2nd of 3 in the `do` of greet`."""
         state = deed.machine.states[deed.state]
         name = prefix_of(deed.owner) + (state.name or deed.machine.id)
         if not deed.block:

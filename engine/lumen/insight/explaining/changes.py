@@ -25,7 +25,7 @@ class StepSituation(NamedTuple):
     """The ids of the behaviour whose context is edited; empty for the outermost."""
 
     def edited(self, change: ProposedChange) -> "StepSituation":
-        """Return the situation with these edits; a new `event` has only the data that the change gives it."""
+        """Return the situation with these edits; a new `event` has only the data in the change."""
         snapshot, event = self.snapshot, self.event
         if "event" in change:
             event = Event(change["event"], None, snapshot.at)

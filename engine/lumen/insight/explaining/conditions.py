@@ -1,4 +1,4 @@
-"""A guard evaluated again: whether it holds, its parts with their values, and the first part that is false."""
+"""Evaluates a guard again: whether it is true, its parts with their values, and the first part that is false."""
 
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
@@ -35,7 +35,7 @@ def parts(guard: Expression, scope: Scope) -> tuple[GuardPart, ...]:
 
 
 def first_false(guard: Expression, scope: Scope) -> GuardPart | None:
-    """Return the first part that is not true; None if the guard as a whole holds."""
+    """Return the first part that is not true; None if the whole guard is true."""
     if holds(guard, scope):
         return None
     return next((part for part in parts(guard, scope) if not part.holds), None)

@@ -133,7 +133,7 @@ class EventOrigin(NamedTuple):
 
 
 def origin(one: RecordedStep, event: Event) -> EventOrigin | None:
-    """Return the cause of an event, as far as the event or the routes give it; None if it is unknown."""
+    """Return the cause of an event from its data, or from the table of routes; None if the cause is unknown."""
     if event.cause and (said := _said(event.cause)):
         return said
     by = event.data.get("by") if isinstance(event.data, Mapping) else None

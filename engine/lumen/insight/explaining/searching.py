@@ -63,7 +63,7 @@ def smallest_change(
 ) -> ProposedChange | None:
     """Return the change with the fewest edits after which `happens` is true; None if no such change was found.
 
-    `others` are the transitions that precede `wanted`; their guards may have to become false.
+    `others` are the transitions that precede `wanted`; a change may need to make their guards false.
     """
     proposals = islice(_proposals(moment, node, wanted, others, from_.owner), MAX_TRIED)
     return next((change for change in proposals if happens(from_.edited(change))), None)

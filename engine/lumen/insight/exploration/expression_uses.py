@@ -24,7 +24,7 @@ from lumen.talk.hearing import ENTRY
 
 
 class ExpressionUse(NamedTuple):
-    """An expression, and the context key that gets its value."""
+    """An expression, and the context key to which its value is assigned."""
 
     tree: ExpressionNode
     key: str = ""

@@ -9,7 +9,7 @@ def history_uses(machine: MachineDefinition) -> Mapping[str, frozenset[str]]:
     """Return for each history state the names of the states from which it can be restored before it is overwritten.
 
     A history is overwritten when its parent is left, so a path through the parent does not count. The states that a
-    transition enters are approximated: the result may contain too many states, but lacks none that matters.
+    transition enters are approximated: the result can contain too many states, but lacks none that matters.
     """
     histories = (state for state in machine.states.values() if state.kind is StateKind.HISTORY)
     return {state.path: _uses(machine, state) for state in histories}

@@ -19,7 +19,7 @@ from lumen.talk.hearing import always_caught
 
 
 def assigned_on_entry(block: tuple[PlacedAction, ...]) -> frozenset[str]:
-    """Return the keys that a block certainly gives new values that do not depend on the old ones."""
+    """Return the keys to which a block certainly assigns new values that do not depend on the old values."""
     return frozenset(
         key
         for step in block
@@ -30,7 +30,7 @@ def assigned_on_entry(block: tuple[PlacedAction, ...]) -> frozenset[str]:
 
 
 def assigned_by(transition: Transition, caught: frozenset[str] = frozenset()) -> frozenset[str]:
-    """Return the keys that a transition's actions certainly give new values, up to the first action that may fail.
+    """Return the keys to which a transition's actions certainly assign values, up to the first action that can fail.
 
     An expression that the true guard has already evaluated from the event alone can't fail. `caught` are the keys that
     `heard` certainly has there.

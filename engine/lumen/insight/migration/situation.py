@@ -117,7 +117,7 @@ class Situation:
         )
 
     def busy(self) -> MigrationDelay | None:
-        """Return a delay for the first removed state whose `do` is under way; None if there is no such state.
+        """Return a delay for the first removed state whose `do` is running; None if there is no such state.
 
         Such a `do` can still lead to another state.
         """
@@ -125,7 +125,7 @@ class Situation:
         return next((_gone(node) for node in gone if node.path in self.snapshot.doing), None)
 
     def delays(self, placement: Placement) -> Iterator[MigrationDelay]:
-        """Yield a delay for each `do` and invoked behaviour under way that can't continue, in the old file's order."""
+        """Yield a delay for each running `do` and invoked behaviour that can't continue, in the old file's order."""
         doing = self.snapshot.doing
         changed = self.changed(placement)
         for node in self.start.ordered:
@@ -165,5 +165,5 @@ def _gone(node: StateNode) -> MigrationDelay:
 
 
 def _is_busy(snapshot: Snapshot) -> bool:
-    """Return whether a `do` is under way in a behaviour or in a behaviour that it has invoked."""
+    """Return whether a `do` is running in a behaviour or in a behaviour that it has invoked."""
     return bool(snapshot.doing) or any(_is_busy(child.snapshot) for child in snapshot.invoked.values())

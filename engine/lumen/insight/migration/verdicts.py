@@ -36,7 +36,7 @@ class MigrationPlan(NamedTuple):
 
 
 class MigrationDelay(NamedTuple):
-    """A delay: the `do` of a state, or an invoked behaviour, is under way and was changed or removed.
+    """A delay: the `do` of a state, or an invoked behaviour, is still running and was changed or removed.
 
     Try again after the next step, or with `now`, which cancels the `do` or the behaviour.
     """

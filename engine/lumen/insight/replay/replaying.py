@@ -18,7 +18,7 @@ MachineSource = Callable[[str, str], MachineDefinition | None]
 
 
 class StepOutcome(NamedTuple):
-    """The result of a step, as recorded or as replayed; `str` gives it in words."""
+    """The result of a step, as recorded or as replayed; `str` returns it in words."""
 
     exited: tuple[str, ...]
     """The names of the states that were left."""

@@ -91,7 +91,7 @@ class VisitWatch:
 
 
 def visits(entries: Iterable[tuple[RecordedEntry, MachineDefinition | None]]) -> Iterator[RecordedVisit]:
-    """Yield the visits in a journal, each at its end; each entry comes with the machine that ran.
+    """Yield the visits in a journal, each at its end; each entry is paired with the machine that ran.
 
     The last visit can be incomplete, that is, not `whole`.
     """
