@@ -5,12 +5,18 @@ from pathlib import Path
 
 import pytest
 
+import lumen
 from lumen.bus import Bus
+from lumen.bus.memory import MemoryBus
 from lumen.cli import stop
 from lumen.cli.main import main
 from lumen.cli.person import person
 from lumen.run.exhibition import Exhibition
+from lumen.run.reaching import robots_meant
+from lumen.run.recovery.run_directory import RunDirectory
+from tests import ROOT
 from tests.cli.conftest import Terminal
+from tests.copying import copied_project
 from tests.waiting import until
 
 
@@ -56,3 +62,25 @@ def test_where_no_robot_answers_it_says_what_is_left(
     said = capsys.readouterr().err
     assert "the robot does not answer on `avatar.NAO.stop` and may still move: press the button on its chest" in said
     until(lambda: told == [{"command": "stop"}])
+
+
+@pytest.mark.parametrize(
+    ("url", "meant"), [("memory://", ["one"]), ("amqp://hall.local", ["one", "two"]), ("", ["one", "two"])]
+)
+def test_all_robots_of_a_house_on_a_broker_are_meant_and_else_those_that_run_here(
+    url: str, meant: list[str], tmp_path: Path
+) -> None:
+    root = copied_project(ROOT / "tests/lint/base", tmp_path / "house")
+    main_file = root / "lumen.yaml"
+    one = "robot: {name: TINY, model: tiny}"
+    both = "robots: {one: {model: tiny, at: {x: 0, y: 0}}, two: {model: tiny, at: {x: 0, y: 0.5}}}"
+    main_file.write_text(main_file.read_text("utf-8").replace(one, both), "utf-8")
+    directory = RunDirectory(root, "one")
+    try:
+        if url:
+            directory.open(MemoryBus(), url, lumen.load(root, robot="one"))
+        assert robots_meant(str(root), None) == meant
+        assert robots_meant(str(root), "amqp://hall.local") == ["one", "two"]
+        assert robots_meant(str(root), "memory://") == meant
+    finally:
+        directory.close(forget=True)

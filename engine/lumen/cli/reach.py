@@ -33,7 +33,7 @@ def for_each_robot(options: argparse.Namespace, do: Callable[[argparse.Namespace
 
 def names_meant(options: argparse.Namespace) -> list[str]:
     """Return the name in --robot-name, else all names in `robots:`; one empty name if lumen.yaml has no `robots:`."""
-    return [options.robot_name] if options.robot_name else robots_meant(options.project) or [""]
+    return [options.robot_name] if options.robot_name else robots_meant(options.project, options.bus) or [""]
 
 
 def reach(options: argparse.Namespace) -> Reached:

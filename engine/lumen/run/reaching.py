@@ -44,7 +44,7 @@ def reach_exhibition(project: str | None, bus: str | None, robot: str = "") -> R
     wanted = one_robot(root, robot)
     found = _running(root, wanted if robot else "")
     home = _home(found) or wanted
-    url = bus or os.environ.get("LUMEN_BUS") or ("" if found is None else str(found.get("bus", "")))
+    url = bus or os.environ.get("LUMEN_BUS") or str((found or _running(root) or {}).get("bus", ""))
     if url and not within_process(url):
         return Reached(connect(url, sender=TERMINAL), _robot(root, found, home), *_keys(root, found, home), url, home)
     if found is None:
@@ -60,11 +60,17 @@ def reach_exhibition(project: str | None, bus: str | None, robot: str = "") -> R
     return Reached(opened, _robot(root, found, home), *_keys(root, found, home), home=home)
 
 
-def robots_meant(project: str | None) -> list[str]:
-    """Return the robots of `robots:` that run on this machine, or all if none does; empty with one `robot:`."""
+def robots_meant(project: str | None, bus: str | None) -> list[str]:
+    """Return all robots of `robots:`; empty with one `robot:`.
+
+    Without a broker, whose robots may run on other machines, leave out those that do not run here, if any does. `bus`
+    is the address, if known.
+    """
     root = running_project(project)
     robots = robots_of(root, None)
-    return [name for name in robots if _running(root, name)] or list(robots)
+    here = {name: found for name in robots if (found := _running(root, name))}
+    urls = (bus or os.environ.get("LUMEN_BUS"), *(str(found.get("bus", "")) for found in here.values()))
+    return list(robots if any(url and not within_process(url) for url in urls) else here or robots)
 
 
 def _running(root: Path, robot: str = "") -> dict[str, Any] | None:
