@@ -5,11 +5,11 @@ from dataclasses import dataclass
 from math import hypot, inf
 from typing import Any
 
-from lumen.errors import RobotFailedError, UsageError
+from lumen.errors import RobotFailedError, RobotRefusedError, UsageError
 from lumen.language.added_verbs import whole_result
 from lumen.language.body_parts import LEGS, WHOLE_BODY, part_of
 from lumen.language.causes import VISITOR, Cause
-from lumen.language.commands import Do, Look, Move, Posture, Say, Walk
+from lumen.language.commands import Do, Look, Move, Posture, Rest, Say, Wake, Walk
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.events import Event
 from lumen.language.robots import Body
@@ -94,9 +94,9 @@ class RecordingRobot(ExecutingRobot):
     """Gives commands realistic durations: its own for a motion, 0.4 s plus 0.06 s per character for a text.
 
     `behaves` maps a verb to `fails`, `hangs` or another duration [s], `results` an added verb to its result (else it is
-    made of the defaults of its schema). With a `runner` other added verbs are performed by their code. `performed`
-    lists (time [s], command) in the order begun. Time passes only by `advance`. The head turns as commands demand, so
-    that faces move in its camera.
+    made of the defaults of its schema). After `rest` it refuses to move until `wake`, as other robots do. With a
+    `runner` other added verbs are performed by their code. `performed` lists (time [s], command) in the order begun.
+    Time passes only by `advance`. The head turns as commands demand, so that faces move in its camera.
     """
 
     def __init__(
@@ -112,7 +112,7 @@ class RecordingRobot(ExecutingRobot):
         self._behaves, self._results = dict(behaves or {}), dict(results or {})
         self._angles = dict(body.postures["Stand"])
         self._pressed: set[str] = set()
-        self._plugged = False
+        self._plugged, self._awake = False, True
         self._visitor: Visitor | None = None
         self._noticed: list[Event] = []
         self._reckoning = DeadReckoning()
@@ -231,6 +231,10 @@ class RecordingRobot(ExecutingRobot):
 
     def _begin(self, command: RobotCommand, now: float) -> Activity:
         command = self._bounds.fit(command)
+        if isinstance(command, Rest | Wake):
+            self._awake = isinstance(command, Wake)
+        elif isinstance(command, Look | Move | Perform | Posture | Walk) and not self._awake:
+            raise RobotRefusedError("the motors are off: `wake` first")
         self.performed.append((now, command))
         row = row_of(command)
         behaves = self._behaves.get(row.verb)
