@@ -91,7 +91,7 @@ class Watch(Observer):
 @pytest.mark.parametrize(
     ("story", "places", "shown"),
     [
-        ("operator", ["clock", "globe"], ["clock", "clock", "organ", "globe", "globe"]),
+        ("operator", ["clock", "globe"], ["clock", "clock", "organ", "organ", "globe", "globe"]),
         ("visit", EXHIBITS, [name for name in EXHIBITS for _ in range(2)]),
     ],
 )

@@ -8,7 +8,7 @@ from lumen.language.robots import Body
 from lumen.language.roles import LEG_ROLES, SIDES
 
 ROBOT_PREFIX = "nao"
-"""The prefix of the robot's element names in the hall, such as `nao/LKneePitch`."""
+"""The prefix of the robot's element names in the hall: `nao/`, then the name in the model."""
 
 STAGE_SITE = "stage"
 """The hall's site on which the robot is placed."""
