@@ -19,6 +19,7 @@ SAID = {"Start": {"id": "d1", "command": {"Say": {"text": "Selamat datang", "lan
         ({"heard": "face", "entered": ["greet"], "commands": [SAID]}, "face: → greet, says “Selamat datang”",
          "face: → greet, berkata “Selamat datang”"),
         ({"timer": "after.12s.goodbye", "entered": ["idle"]}, "time is up: → idle", "waktu habis: → idle"),
+        ({"heard": "opens", "entered": ["open", "open.idle"]}, "opens: → open.idle", None),
         ({"heard": "touched", "entered": ["talking", "greet"]}, "touched: → talking, greet", None),
         ({"goto": "goto", "data": {"state": "offer"}, "cause": PERSON}, "sent to offer, by Aisyah",
          "dikirim ke offer, oleh Aisyah"),

@@ -165,7 +165,9 @@ def _by(cause: object, words: EntryPhrases) -> str:
 def _did(entry: Mapping[str, Any], words: EntryPhrases) -> Iterator[str]:
     entered = entry.get("entered")
     if isinstance(entered, list) and entered:
-        yield f"→ {', '.join(map(str, entered))}"
+        names = [str(name) for name in entered]
+        inner = [name for name in names if not any(other.startswith(f"{name}.") for other in names)]
+        yield f"→ {', '.join(inner)}"
     for kind, said in _begun(entry):
         match said:
             case {"text": str(text)} if kind == "Say":

@@ -1,7 +1,7 @@
 """Reads numbers in URDF and MJCF, and computes nested frames from positions and quaternions (w, x, y, z)."""
 
 from dataclasses import dataclass
-from math import atan2, cos, hypot, isfinite, pi, sin
+from math import cos, hypot, isfinite, pi, sin
 
 from lumen.project.formats.conversion_findings import ConversionFindings
 from lumen.project.formats.xml_elements import XmlElement
@@ -93,8 +93,13 @@ def between(start: Vector, end: Vector) -> Quaternion:
 def of_axes(x: Vector, y: Vector) -> Quaternion:
     """Return the rotation to the frame with this x axis, whose y axis is `y` without its share along `x`."""
     first = between(AXES["x"], x)
-    angle = atan2(dot(rotated(first, AXES["z"]), y), dot(rotated(first, AXES["y"]), y))
-    return product(turn(x, angle), first)
+    cosine, sine = dot(rotated(first, AXES["y"]), y), dot(rotated(first, AXES["z"]), y)
+    length, x_length = hypot(cosine, sine), hypot(*x)
+    if length + cosine < 1e-9 * length or not x_length:
+        return product(turn(x, pi), first)
+    # Without an angle, since its sine and cosine would leave a residue in rotations by a quarter turn.
+    a, b, c = (each / x_length * sine for each in x)
+    return product(unit((length + cosine, a, b, c)), first)
 
 
 def unit(q: Quaternion) -> Quaternion:
