@@ -1,10 +1,14 @@
 """A ring holds the last minutes, keeps them if something happened, and stays within its limits."""
 
+import errno
+import math
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from lumen.features.mcap import ring as ringing
+from lumen.features.mcap.files.rewriting import rewrite
 from lumen.features.mcap.recordings_folder import RecordingsFolder
 from lumen.features.mcap.recovering import RecordingRescue
 from lumen.features.mcap.ring import RingTape
@@ -124,6 +128,65 @@ def test_a_disk_that_refuses_is_told_once_and_tried_again(
     assert tape.trouble == ""
     assert len(folder.parts()) >= 1
     tape.close()
+
+
+class Refusing:
+    """A `rewrite` that fails as often as it is told to."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch, times: float) -> None:
+        self.times, self._rewrite = times, rewrite
+        monkeypatch.setattr(ringing, "rewrite", self)
+
+    def __call__(self, *arguments: Any, **more: Any) -> Any:
+        self.times -= 1
+        if self.times >= 0:
+            raise OSError(errno.ENOSPC, "No space left on device")
+        return self._rewrite(*arguments, **more)
+
+
+def test_a_recording_that_could_not_be_written_is_written_later(
+    folder: RecordingsFolder, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    Refusing(monkeypatch, 3)
+    tape = RingTape(folder, RecordingSettings(ring=120.0))
+    live(tape, 0, 300)
+    tape.mark("fallen", BEGAN + 300)
+    live(tape, 300, 600)
+    (path,) = folder.files()
+    found = times(path)
+    assert path.name.endswith("-fallen.mcap")
+    assert {*range(300 - 120, 300 + 60, 10)} <= {*found}, "the minutes before the mark, and the one after it"
+    tape.close()
+    assert folder.parts() == []
+
+
+def test_a_recording_that_is_never_written_is_given_up_and_its_ring_stays_small(
+    folder: RecordingsFolder, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    Refusing(monkeypatch, math.inf)
+    tape = RingTape(folder, RecordingSettings(ring=60.0))
+    tape.mark("fallen", BEGAN)
+    live(tape, 0, 2000)
+    assert "the recording of `fallen` is given up" in caplog.text
+    assert len(folder.parts()) <= 5
+    assert folder.files() == []
+    tape.close()
+
+
+def test_a_recording_that_could_not_be_written_at_the_end_is_rescued_at_the_next_start(
+    folder: RecordingsFolder, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    tape = RingTape(folder, RecordingSettings(ring=120.0))
+    live(tape, 0, 300)
+    with monkeypatch.context() as broken:
+        Refusing(broken, math.inf)
+        tape.mark("fallen", BEGAN + 300)
+        tape.close()
+    told = list[str]()
+    RecordingRescue(folder, told.append).close()
+    (path,) = folder.files()
+    assert times(path)[-1] == 290
+    assert "the last minutes of the run" in told[0]
 
 
 def test_forgetting_reaches_the_ring_and_what_was_kept(folder: RecordingsFolder) -> None:

@@ -23,6 +23,8 @@ AFTER = 60.0
 """The time for which recording continues after a mark [s]."""
 RETRY_PERIOD = 30.0
 """The pause after a disk error [s]."""
+PATIENCE = 600.0
+"""The time after which a marked recording that can't be written is given up [s]."""
 
 _log = logging.getLogger(__name__)
 
@@ -72,12 +74,16 @@ class RingTape:
             if self._file:
                 self._file.settle()
             if self._why and now >= self._until:
+                self._until = now + RETRY_PERIOD  # if it fails
                 self._keep(now)
             elif self._pieces and (now - self._pieces[-1][0] >= PIECE_PERIOD or now < self._pieces[-1][0]):
                 self._end()
                 self._drop(now)
         except (OSError, LumenError) as error:
             self._fail(error, now)
+            if self._why and now >= self._marked + PATIENCE:
+                _log.warning("the recording of `%s` is given up: it could not be written for %g s", self._why, PATIENCE)
+                self._why = ""
 
     def forget(self, people: Sequence[PersonName]) -> None:
         """Remove people from all pieces and kept recordings; log those that can't be rewritten."""
@@ -92,7 +98,10 @@ class RingTape:
                     _log.warning("a recording still names a person who should be forgotten: %s", error)
 
     def close(self) -> None:
-        """Keep the pieces if a moment is marked, else delete them."""
+        """Keep the pieces if a moment is marked, else delete them.
+
+        If the recording can't be written, its pieces stay for the next start.
+        """
         try:
             if self._why:
                 self._keep(time.time())
@@ -134,16 +143,19 @@ class RingTape:
         return after[0][0] if after else self._pieces[number][0] + (PIECE_PERIOD if self._file else 0.0)
 
     def _keep(self, now: float) -> None:
-        """Join the pieces into a recording, delete them, and prune the folder; do nothing without pieces."""
-        why, self._why = self._why, ""
+        """Join the pieces into a recording, delete them, remove the mark, and prune the folder.
+
+        Without pieces, only remove the mark. If the recording can't be written, the mark and the pieces stay.
+        """
         self._end()
         pieces = [piece for _, piece in self._pieces]
         if not pieces:
+            self._why = ""
             return
         began = self._pieces[0][0]
-        path = kept_as(self._folder, self._marked, why)
+        path = kept_as(self._folder, self._marked, self._why)
         rewrite(pieces, path, more=self._last(began, now, pieces))
-        self._pieces = []
+        self._pieces, self._why = [], ""
         for piece in pieces:
             with suppress(OSError):
                 piece.unlink()
