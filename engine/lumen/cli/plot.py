@@ -31,9 +31,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Draw the file to a .png or .svg and print the path of the drawing; return 0.
+    """Draw the file as a .png or .svg and print the path of the drawing; return 0.
 
-    Raises UsageError if the file can't be read or the drawing can't be written.
+    Raises UsageError if the file can't be read, `--at` does not fit it, or the drawing can't be written, and
+    ProjectError if the file has mistakes.
     """
     path = _found(options.file)
     output = options.output or Path(f"{path.stem}.png")

@@ -61,7 +61,7 @@ def _are_slotted(phrases: Mapping[str, tuple[str, ...]]) -> bool:
 
 
 def is_heard(text: str, phrases: Mapping[str, tuple[str, ...]], lists: Lists = _NO_LISTS) -> bool:
-    """Return True if any phrase, in any language, is in the text as whole words; negations are ignored.
+    """Return True if any phrase, in any language, is in the text as whole words, even in a negation.
 
     `lists` are the lists that slots may name.
     """

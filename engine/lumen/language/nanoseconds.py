@@ -17,10 +17,10 @@ def nanoseconds(seconds: float) -> int:
 
 
 def in_seconds(nanoseconds: int) -> float:
-    """Return a time in nanoseconds in [s]; `nanoseconds` is its exact inverse for the first hundred days."""
+    """Return a time [ns] in seconds; `nanoseconds` is its exact inverse for the first hundred days."""
     return nanoseconds / NANOSECONDS
 
 
 def to_the_nanosecond(seconds: float) -> float:
-    """Return a time rounded to whole nanoseconds [s], which equals that of a clock that adds up short times."""
+    """Return a time [s] rounded to whole nanoseconds, so that many short times add up to the same as one long time."""
     return in_seconds(nanoseconds(seconds))

@@ -56,7 +56,10 @@ class _EnoughError(Exception):
 
 
 def mjcf_elements(content: bytes) -> tuple[list[ModelElement], ModelFault | None]:
-    """Return the elements of a model, and its first fault: invalid XML or an exceeded limit; None without a fault."""
+    """Return the elements of a model, and its first fault (invalid XML, an entity, an exceeded limit) or None.
+
+    If the XML is invalid, there are no elements; at any other fault, reading stops, and the elements up to it remain.
+    """
     reader = _Reader()
     try:
         reader.parser.Parse(content, True)

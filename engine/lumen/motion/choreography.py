@@ -91,7 +91,10 @@ def returning(part: MotionDefinition, angles: Mapping[str, float], pause: float,
 
 
 def _later(key: Keyframe, begin: float) -> Keyframe:
-    """Return the key `begin` [s] later. It avoids `replace`, which takes three times as long for thousands of keys."""
+    """Return the key moved `begin` [s] later.
+
+    A motion can have thousands of keys, and `replace` would take three times as long.
+    """
     if not begin:
         return key
     return Keyframe(begin + key.time, key.angle, key.interpolation, key.handle_in, key.handle_out, key.where)

@@ -326,7 +326,7 @@ def _each(
 
 
 def _built(files: Mapping[str, BuiltFile[T]]) -> dict[str, T]:
-    """Return the values built from these files, without files that contained too little to build a value."""
+    """Return the built values by name, leaving out files with too little content to build a value."""
     return {name: file.built for name, file in files.items() if file.built is not None}
 
 

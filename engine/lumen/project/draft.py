@@ -109,7 +109,11 @@ class ProjectDraft:
         return all(name in self.behaviors and self.report("behaviors", name).whole for name in names)
 
     def report(self, folder: str, name: str) -> DocumentReport:
-        """Return the report of `FOLDER/NAME.yaml`; of motions, gestures and life, that of this robot's own file."""
+        """Return the report of `FOLDER/NAME.yaml`; in knowledge/, the file can also be `NAME.md`.
+
+        If this robot has its own file for a motion, a library of gestures or a style of life of that name, it is that
+        file's report. Raises KeyError if there is no report, or if a passage of knowledge was not built.
+        """
         if folder == "motions" and name in self.own_motions and self.settings:
             folder = f"motions/{self.settings.model}"
         elif folder == LIFE_FOLDER and name in self.own_life and self.settings:

@@ -222,7 +222,10 @@ def _examples(
 def _misfits(
     given: Mapping[str, Any], parameters: Mapping[str, tuple[str, ...]], where: NodePath
 ) -> Iterator[tuple[NodePath, str, str, bool]]:
-    """Yield each fault of the arguments of an example: path, message, hint, and whether the key is wrong."""
+    """Yield the faults of an example's arguments: path, message, hint, and whether to mark the key, not the value.
+
+    Of the missing arguments, only the first is a fault, and only if no argument is unknown.
+    """
     unknown = [name for name in given if name not in parameters]
     for name in unknown:
         hint = did_you_mean(name, parameters, "the arguments are") if parameters else "the function has no arguments"

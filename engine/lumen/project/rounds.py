@@ -54,7 +54,7 @@ class Rounds:
                 self.by_place[entry.where] = name, key
 
     def variables(self, where: NodePath) -> dict[str, str]:
-        """Return the names that a `for`, `hears` or `shared` defines at this path, each with its replacement."""
+        """Return the names that `for`, `hears` and `shared` define at a path, and the expressions that replace them."""
         found = dict(self.known)
         for place, (name, key) in self.by_place.items():
             if where[: len(place)] == place and where[len(place) : len(place) + 1] in _WITHIN:

@@ -8,10 +8,10 @@ _REACHED = 1e-4
 def approach(
     offsets: dict[str, float], goals: Mapping[str, float], speeds: Mapping[str, float], dt: float, settling: float
 ) -> None:
-    """Move `offsets` towards `goals` [rad; hands 0..1] for `dt` [s]; a joint without a goal returns to 0.
+    """Move `offsets` in place towards `goals` [rad; hands 0..1] for `dt` [s]; a joint without a goal returns to 0.
 
-    `settling` [s] is the time constant of the approach, `speeds` [rad/s] limits each joint. Joints that are back at 0
-    are removed.
+    `settling` [s] is the time constant of the approach, and `speeds` [rad/s; hands 1/s] has the greatest speed of each
+    joint. Joints that are back at 0 are removed from `offsets`.
     """
     share = min(1.0, dt / settling)
     for joint in (*offsets, *(goals.keys() - offsets.keys())):

@@ -94,7 +94,7 @@ class SnapshotStore:
         self._wrote(self._home.write_json(ALIVE_FILE, {"time": time.time(), "told": True}))
 
     def kept(self) -> StoredSnapshot | None:
-        """Return the snapshot of a run that did not end by itself; None if it is missing or unreadable."""
+        """Return the snapshot that the last run left; None if it is missing, unreadable or of another version."""
         try:
             data = self._home.read_json(SNAPSHOT_FILE)
             if data["version"] != SNAPSHOT_VERSION:

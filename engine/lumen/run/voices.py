@@ -112,9 +112,9 @@ class Speaks(Protocol):
 def voiced(
     chosen: Setup, voice: str, file: Path | None, language: str, track: AudioTrack | None = None
 ) -> Callable[[], None]:
-    """Give the robot a voice; return a function that ends the voice.
+    """Give the robot the voice, unless it is `none`; return a function that closes the voice.
 
-    Raises UsageError or ModuleError if the voice is not available.
+    Raises UsageError if `file` can't be used, and UsageError or ModuleError if the voice is not available.
     """
     found = speaker(voice, file, chosen.robot, language, track)
     if found is None:

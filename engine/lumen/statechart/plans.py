@@ -145,7 +145,10 @@ class MicrostepPlanner:
         return self._make(start, (), left, entered, history)
 
     def plan(self, start: Configuration, enabled: tuple[CompiledTransition, ...], history: History) -> MicrostepPlan:
-        """Return the microstep of these enabled transitions in the configuration `start`."""
+        """Return the microstep that takes these enabled transitions from `start`, without those that others preempt.
+
+        `history` has the states that the history states remember.
+        """
         # A plan enters other states if histories remember others
         key = (enabled, *history.items()) if self.chart.has_history else enabled
         found = start.plans.get(key)

@@ -65,7 +65,7 @@ class PropertyMonitor:
 
 
 def monitors(machine: MachineDefinition, properties: Iterable[Property]) -> list[PropertyMonitor]:
-    """Return a monitor for each property, at the beginning of a run."""
+    """Return new monitors, one for each property, for a run that is about to begin."""
     return [PropertyMonitor(property, machine) for property in properties]
 
 

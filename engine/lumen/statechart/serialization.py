@@ -104,7 +104,7 @@ def _shifted(snapshot: Snapshot, now: float, later: float, due: Callable[[Timer]
 
 
 def moved(position: Within, later: float) -> Within:
-    """Return the position with the start of everything awaited moved by `later` [s]."""
+    """Return the position with the start of each wait moved later by `later` [s]."""
     return position._replace(inner=_moved(position.inner, later))
 
 

@@ -133,7 +133,7 @@ class Ears(Module):
         return None if until == float("inf") else max(TICK, until - now)
 
     def _take(self, route: str, message: Message) -> None:
-        """Record faces and touches when they arrive, even if an earlier sound is still being recognised."""
+        """Let faces and touches open the ears at once, even while an earlier sound is recognised; queue the message."""
         if take := self._addressing.routes().get(route):
             take(message.body, self.clock())
         super()._take(route, message)

@@ -28,7 +28,7 @@ class NestedFrame:
 
 
 def product(a: Quaternion, b: Quaternion) -> Quaternion:
-    """Return the rotation by `b`, then by `a`."""
+    """Return the product of two quaternions (w, x, y, z); of rotations, it is the one by `b`, then by `a`."""
     aw, ax, ay, az = a
     bw, bx, by, bz = b
     return (

@@ -47,7 +47,7 @@ class RecordingsFolder:
         return sorted(self.ring.glob(f"*{SUFFIX}"))
 
     def begin(self, path: Path) -> Home | None:
-        """Write and return a note that a recording is being written, until it is released; return None on failure."""
+        """Return a new note that says, until it is released, that `path` is being written; None if it can't be made."""
         note = Home(self.path / f"{uuid.uuid4().hex[:12]}{_NOTE}")
         try:
             self.make()

@@ -35,9 +35,10 @@ class Microphones:
         return CallSequence(self._listen(command), self._hush)
 
     def _listen(self, command: Record) -> CallSteps:
-        """Record: NAOqi calls `processRemote` of Lumen's service with sound about six times a second.
+        """Record for the command's duration, and give `notice` the event of the recording.
 
-        Discard sound from before the recording. Raises RobotFailedError if the sound does not arrive in time.
+        NAOqi calls `processRemote` of Lumen's service with sound about six times a second; sound from before the
+        recording is discarded. Raises RobotFailedError if sound is missing RECORDING_GRACE after the duration.
         """
         yield self._session.serve(MICROPHONE_SERVICE, self._service)
         yield self._session.post(

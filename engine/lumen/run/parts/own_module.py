@@ -172,7 +172,10 @@ class OwnModulePart(Part):
         self._happen(Event(f"{self.name}.lost", {"seconds": seconds, "reason": reason}))
 
     def _find(self, clock: float) -> None:
-        """Record that the program is there; after a loss it must first send a sign of life, or run for STEADY."""
+        """Record that the program is there.
+
+        After a loss, it counts as there once it has sent a sign of life or, if it sends none, has run for STEADY.
+        """
         if self._lost_at is None:
             self._alive_at = clock
             return

@@ -180,7 +180,10 @@ class MigrationQueue:
         order.answer({**report.to_json(), "lines": list(report.lines())})
 
     def tick(self, now: float) -> None:
-        """End probation and trial if their time has passed, and try to activate the staged bundle."""
+        """End a probation whose time has passed and a trial whose visit has ended.
+
+        Then try to activate the staged bundle, unless it is only being held.
+        """
         if self.rollback_guard.over(now):
             self._records.approve(self.running.hash)
         if self._trial and self._trial.over(self._behavior.loop.runtime.snapshot):

@@ -106,7 +106,7 @@ class ValidationWorker:
         return found or VisitsCheck(trouble="the process that plays them was restarted")
 
     def close(self) -> None:
-        """Keep the process for the next user."""
+        """Keep the process, if it has started, for the next worker."""
         if self._process.started:
             keep(IdleProcess(self._process, self._receiver))
             self._process = JudgeProcess(COMMAND)
