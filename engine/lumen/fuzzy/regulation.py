@@ -87,9 +87,10 @@ class Regulator:
             self._set(source.variable, number(found))
 
     def signals(self, now: float) -> Signals:
-        """Return the signals to send at `now`.
+        """Return the signals to send at `now`: those of the outputs that have changed enough since they were last sent.
 
-        There are none after small changes, before `every` has passed, without all inputs, or if no rule fires.
+        There are none if no input has changed, before `every` has passed since the last evaluation, while an input is
+        missing, or if an output has no value: no rule fires for it, and it has neither a default nor a value to keep.
         """
         if not self._changed or now - self._told_at < self.controller.tracking.every - ROUNDING:
             return NOTHING

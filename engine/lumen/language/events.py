@@ -91,10 +91,10 @@ _ROBOT_EVENTS: Mapping[str, Mapping[str, object]] = {
 
 
 def robot_events() -> Mapping[str, Mapping[str, object]]:
-    """Return the events that every robot raises by itself, each with the JSON Schema of its data.
+    """Return the events about any robot that a behaviour need not declare, each with the JSON Schema of its data.
 
-    A behaviour need not declare them. If parts of the exhibition run in separate processes, `robot`, `motion` and the
-    modules can be lost and come back.
+    Not all of them come from the robot: people cause `stop` and `resume`, and the engine raises `brain.lost`. The
+    `lost` and `back` events of `robot`, `motion` and the modules report that they have gone or come back.
     """
     gone = _object(seconds={"type": "number"})
     return {

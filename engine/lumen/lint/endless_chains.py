@@ -65,7 +65,10 @@ def _beginnings(survey: ChainSurvey) -> Iterator[InstantChain]:
 
 
 def _stays(survey: ChainSurvey, state: State) -> bool:
-    """Return whether a state is still active at the next rest after its entry; True if that is uncertain."""
+    """Return whether a state is still active when the machine next rests after its entry; True if that is uncertain.
+
+    False if the machine does not rest within MAX_STEPS_TO_REST steps.
+    """
     chain = InstantChain(survey)
     try:
         chain.stand_around(state.path)

@@ -92,7 +92,7 @@ def _password(bus: str, report: DocumentReport) -> None:
 
 
 def _carried(report: DocumentReport, route: Route) -> None:
-    """Report a time to live that is too long for a command, and limits of a journal."""
+    """Report a time to live that is too long for a command or a stop, and limits that let a journal drop messages."""
     where = route.where
     if route.carried in (Carried.COMMAND, Carried.STOP) and (route.ttl or 0.0) > LONGEST_COMMAND_TTL:
         message = f"a {route.carried} may be performed {route.ttl:g} s late, when it is no longer wanted"

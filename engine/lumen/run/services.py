@@ -106,7 +106,10 @@ class Services:
 
     @property
     def lasts(self) -> bool:
-        """Whether the run keeps files in a home; False for a story, and for a guest of another run."""
+        """Whether this process keeps the run's files in a home.
+
+        False for a story, for a process without a brain, and if another run holds the home or it can't be used.
+        """
         directory = self.plan.options.get("directory")
         return bool(directory and directory.home) and self.plan.story is None
 

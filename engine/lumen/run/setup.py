@@ -171,7 +171,7 @@ def _bounded(kind: str, row: RobotRow, setup: Setup, project: Project) -> Setup:
 
 
 def robot_names() -> tuple[str, ...]:
-    """Return the names of all robots."""
+    """Return the names of the robots that come with Lumen or an installed package, without a project's drivers."""
     return tuple(table("robots"))
 
 

@@ -320,7 +320,10 @@ class StoryPlayer(Observer):
         return False
 
     def fail(self, lack: UnmetExpectation) -> None:
-        """Fail at the present step, unless the story has failed already."""
+        """Record that the story failed at its current step, or its last one if all are done.
+
+        An earlier failure is kept.
+        """
         position = min(self.position, len(self.story.steps) - 1)
         self.failed = self.failed or StoryFailure(
             self.story.name, position + 1, self.story.steps[position].where, lack.expected, lack.was

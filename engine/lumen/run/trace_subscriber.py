@@ -36,7 +36,7 @@ class TraceListener(Protocol):
         ...
 
     def performing(self, command: Command, now: float) -> None:
-        """Called before a command is performed."""
+        """Called for each command that the trace reports; the robot may have begun it already."""
         ...
 
     def answered(self, event: Event) -> None:

@@ -211,7 +211,7 @@ class Advance:
         return stands.without(id).fork()
 
     def complete(self, stands: QuestionPosition) -> QuestionPosition:
-        """Cancel the deadline of a question whose answer is complete; return the position, which awaits only speech."""
+        """Cancel the deadline of a question whose answer is complete; return the position without the deadline."""
         cancel(self.context, list(awaited(stands.deadline)))
         return stands._replace(deadline=None)
 

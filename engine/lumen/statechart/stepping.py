@@ -63,8 +63,9 @@ def step(machine: MachineDefinition, snapshot: Snapshot, event: Event) -> Step:
     """Return the macrostep for `event`: everything that follows from it until the next event from outside.
 
     The robot's answers and the events of `due` are recognized by their names and ids; if nothing waits for them any
-    more, they change nothing. Time never runs backwards: an event from the past happens at `snapshot.at`. Raises
-    LumenError if the machine never comes to rest, SnapshotError if the snapshot has states that the machine lacks.
+    more, they change nothing, except that the failure of a command outside a `do` raises error.communication. Time
+    never runs backwards: an event from the past happens at `snapshot.at`. Raises LumenError if the machine never comes
+    to rest, or SnapshotError if the snapshot has states that the machine lacks.
     """
     try:
         program: CompiledMachine = machine.__dict__.get("_compiled") or compiled(machine)

@@ -47,9 +47,9 @@ _NOTES = {
 
 
 class TypeCheck:
-    """The values that a context key may hold: those of its types or, if `types:` has more, of its JSON Schema.
+    """The values that a context key may hold: those of its types that also fit its JSON Schema, if `types:` has one.
 
-    All values of the Python types in `quick` are accepted.
+    A value whose exact Python type is in `quick` needs no further check.
     """
 
     __slots__ = ("_schema", "names", "quick")
@@ -104,9 +104,9 @@ def refusal(value: Any, check: TypeCheck | None) -> str:
 
 
 def checked(name: str, checks: Mapping[str, TypeCheck | None], given: Mapping[str, Any]) -> Mapping[str, Any]:
-    """Return the values given for context keys of the machine called `name`.
+    """Return `given`, the values for context keys of the machine called `name`.
 
-    Raises UsageError if a value does not fit.
+    Raises UsageError if the machine has no such key, or a value does not fit.
     """
     for key, value in given.items():
         if key not in checks:

@@ -126,7 +126,7 @@ def test_an_aim_leaves_alone_what_a_command_owns(trial: RobotTrial) -> None:
 
 
 def test_what_is_no_angle_moves_nothing(trial: RobotTrial) -> None:
-    """An aim at an angle that is not a number, or of a joint that the body lacks, moves nothing."""
+    """An aim at an angle that is not finite, or for a joint that the body lacks, moves nothing."""
     _wake(trial)
     trial.live(1.0)
     before = trial.angles()

@@ -29,7 +29,10 @@ def fragment(lines: list[str], at: int, column: int) -> tuple[list[str], int]:
 
 
 def ancestors(lines: list[str], at: int, column: int) -> list[int]:
-    """Return the indices of the lines whose blocks contain the line at index `at`, the outermost first."""
+    """Return the indices of the lines whose blocks contain the line at index `at`, the outermost first.
+
+    An empty line counts as indented to `column`, from 1.
+    """
     found, inner = list[int](), lines[at] if lines[at].strip() else " " * (column - 1) + "x"
     for i in range(at - 1, -1, -1):
         if _SKIPPED.match(lines[i]):

@@ -49,7 +49,7 @@ class Signer:
         self.public = base64.b64encode(self._key.public_key().public_bytes_raw()).decode()
 
     def sign(self, kind: bytes, data: bytes) -> str:
-        """Return the base64 signature of data with the prefix `kind`, `BUNDLE` or `ORDER`."""
+        """Return the signature of `kind` followed by `data`, in base64; `kind` is `BUNDLE` or `ORDER`."""
         return base64.b64encode(self._key.sign(kind + data)).decode()
 
 

@@ -138,11 +138,11 @@ class World:
         return acos(min(1.0, max(-1.0, float(self._torso_axes[8]))))
 
     def set_up(self, angles: Mapping[str, float]) -> None:
-        """Put the robot on its stage in this posture, with flat soles and the stage's site midway between its feet.
+        """Put the robot on its stage in this posture, with the stage's site midway between its feet.
 
-        A robot without two feet is placed with its lowest point at the site; a fixed base stays in place. Use this only
-        to begin a run: afterwards, only the motors move the robot. Raises RobotError if a geom's position is not
-        finite.
+        The left sole is laid flat, and the feet point symmetrically about straight ahead. A robot without two feet is
+        placed with its lowest point at the site; a fixed base stays in place. Use this only to begin a run: afterwards,
+        only the motors move the robot. Raises RobotError if a geom's position is not finite.
         """
         data, root = self.data, self._root
         data.qpos[self._angles] = [angles[name] for name in self.body.joints]

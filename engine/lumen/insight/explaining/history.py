@@ -116,7 +116,11 @@ def within(snapshot: Snapshot | None, owner: str) -> Snapshot | None:
 
 
 def machine_within(one: RecordedStep, owner: str) -> MachineDefinition:
-    """Return the machine of the behaviour that runs under the ids `owner`, as in `hint@quiz`."""
+    """Return the machine of the behaviour that runs under the ids `owner`, as in `hint@quiz`.
+
+    It is the outermost machine if `owner` is empty. For a behaviour that was not running before the step, it is the
+    first one that can be invoked under its id.
+    """
     machine, around = one.machine, one.before
     for id in reversed(owner.split("@")) if owner else ():
         behaviors = [i.behavior for s in machine.states.values() for i in s.invoke if i.id == id]

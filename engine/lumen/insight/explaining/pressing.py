@@ -36,7 +36,11 @@ class ShownButton(NamedTuple):
 
 
 def shown_buttons(machine: MachineDefinition, snapshot: Snapshot, at: float) -> list[ShownButton]:
-    """Return the buttons of all active states, innermost first; a button replaces similar ones of outer states."""
+    """Return the buttons of all active states, and whether pressing each would have an effect at `at` [s].
+
+    A behaviour comes before those that it invokes. Within it, the regions come in turn, each from the innermost state
+    outwards. A button hides those of outer states that it replaces (`Button.replaces`).
+    """
     found: list[ShownButton] = []
     keys: set[str] = set()
     for one in running(machine, snapshot):

@@ -92,7 +92,7 @@ class ExplainedRow(NamedTuple):
 
 
 class ExplainedSentence(NamedTuple):
-    """All rows that could match a sentence in a state, in the order of the file, inner states first."""
+    """All rows that could match a sentence in a state: inner states first, each with its rows in the file's order."""
 
     rows: tuple[ExplainedRow, ...]
 

@@ -80,7 +80,11 @@ RecordedEntry: TypeAlias = JournalInput | JournalJump
 
 
 def entry_data(entry: RecordedEntry) -> dict[str, Any]:
-    """Return an entry as JSON data, without its position and without empty values."""
+    """Return an entry as JSON data, without its position.
+
+    Empty values are left out, except an event's data other than None and a jump's snapshot. So are a timer's data and
+    cause, because the snapshot before it contains the timer.
+    """
     match entry:
         case JournalInput(_, how, event, exited, entered, commands, digest, redacted):
             timer = how == "timer"  # the snapshot before it contains the timer

@@ -89,7 +89,10 @@ class Replayer:
         self._unknown = "the journal does not contain the time before it"
 
     def take(self, entry: RecordedEntry) -> ReplayedStep:
-        """Replay the next entry and return the result. Faulty content of the journal does not raise."""
+        """Replay the next entry and return the result.
+
+        Faulty content of the journal raises no error: `unknown` or `now` of the result reports it.
+        """
         return self._step(entry) if isinstance(entry, JournalInput) else self._jump(entry)
 
     def _step(self, entry: JournalInput) -> ReplayedStep:

@@ -55,7 +55,11 @@ class RemoteBody:
         adopt: Callable[[Project], None],
         refuse: Callable[[RobotCommand], str] = lambda _: "",
     ) -> LiveBehavior:
-        """Return the behaviour on this robot; gaps between ticks count in real time, as the robot counts them."""
+        """Return the behaviour on this robot.
+
+        The gap between ticks that raises `brain.lost` is multiplied by `speed`: it is the same in real time at every
+        speed, because the robot's process counts in real time as well.
+        """
         setup = Setup(self.robot, self._clock, None, tracking=self.tracking)
         found = LiveBehavior(project, setup, bus, story, adopt=adopt, refuse=refuse)
         found.loop.patience *= speed

@@ -63,7 +63,7 @@ class ReloadReport:
         return replace(self, details=[change_data(change, project) for change in self.changes[:MAX_LISTED]])
 
     def kept(self) -> "ReloadReport":
-        """Return a copy without the files and the project, which use much memory."""
+        """Return a copy whose validation has neither the files nor the projects, which use much memory."""
         validation = self.validation and self.validation.kept()
         return replace(self, validation=validation)
 

@@ -24,7 +24,7 @@ _STATEMENT = re.compile(
 def assignments(source: str) -> list[tuple[str, str]] | None:
     """Return the names and values that a script like `x = 1; y += x; z++` assigns, in order.
 
-    Return None if it contains quotes or anything else.
+    Comments are skipped. Return None if the script contains a quotation mark, or a statement of any other form.
     """
     text = re.sub(r"//[^\n]*|/\*.*?\*/", "", source, flags=re.DOTALL)
     if "'" in text or '"' in text:

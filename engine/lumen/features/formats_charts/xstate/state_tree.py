@@ -33,7 +33,10 @@ class XStateNode(ForeignState):
 
     @property
     def foreign_id(self) -> str:
-        """XState's id for the state: its own, else its parent's and its key, or `(machine)` for the root."""
+        """The state's id in XState: its own, else its parent's id and its key, joined by a dot.
+
+        It is `(machine)` for a root without an id.
+        """
         if isinstance(self.source.get("id"), str) and self.source["id"]:
             return str(self.source["id"])
         below = self.parent.foreign_id if isinstance(self.parent, XStateNode) else ""

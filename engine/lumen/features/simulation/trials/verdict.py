@@ -31,7 +31,10 @@ _JOINTS = (COMES_LATE, OVERLOADED)
 
 
 def findings(rehearsal: CaseResult, document: Places, body: Body) -> list[Diagnostic]:
-    """Return the findings about a motion that this body played; `document` is the motion's file."""
+    """Return the findings about the motion of a case, which robots with this body have played.
+
+    `document` holds the places in the motion's file.
+    """
     return [*_Judge(rehearsal, document, body).judge()]
 
 
