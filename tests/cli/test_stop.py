@@ -60,7 +60,7 @@ def test_where_no_robot_answers_it_says_what_is_left(
     bus.subscribe("lumen.config.command", lambda message: told.append(message.body))
     assert main(["stop", str(copy)]) == 2
     said = capsys.readouterr().err
-    assert "the robot does not answer on `avatar.NAO.stop` and may still move: press the button on its chest" in said
+    assert "the robot does not answer on `avatar.NAO.stop` and may still move: switch it off (NAO: hold the" in said
     until(lambda: told == [{"command": "stop"}])
 
 

@@ -62,7 +62,7 @@ CASES: list[tuple[str, list[tuple[str, str, str]], list[str], Risk]] = [
     (
         "how long the journal is kept",
         [("lumen.yaml", "name: Lumen at", "journal: {keep: 3}\nname: Lumen at")],
-        ["`journal.keep` is now `3`, not `30.0`"],
+        ["`journal.keep` is now `3`, not `30`"],
         Risk.COSMETIC,
     ),
     (

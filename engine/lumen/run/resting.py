@@ -35,4 +35,4 @@ def stop_behavior(bus: Bus, robot: str) -> None:
 
 def no_robot(key: str) -> str:
     """Return the line for a person if no robot answers."""
-    return f"the robot does not answer on `{key}` and may still move: press the button on its chest"
+    return f"the robot does not answer on `{key}` and may still move: switch it off (NAO: hold the button on its chest)"

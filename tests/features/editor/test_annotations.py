@@ -84,7 +84,7 @@ def test_signatures(written: str, label: str | None, active: int) -> None:
     assert (found.active if found else 0) == active
     if found:
         assert found.parameters
-        assert "Gives" in found.documentation
+        assert "Returns" in found.documentation
 
 
 def test_folds_end_where_a_part_ends() -> None:
