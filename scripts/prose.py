@@ -4,6 +4,7 @@
     python scripts/prose.py --list               # and each hit of the groups that exceed their limit
     python scripts/prose.py docs/lint.md engine/lumen/lint      # each hit in these files
     python scripts/prose.py --draw 60 --seed 1   # 60 messages, docstrings and sentences, for a reader who wrote none
+    python scripts/prose.py --draw 60 --among starlette pika --key KEY   # 60 functions: half are of these packages
 
 Messages are the string literals of the engine that hold a sentence; the values in an f-string print as `…`. A hit is a
 place to look at, not a verdict: a pattern can be right where it is found. `make check` runs this script.
@@ -11,9 +12,11 @@ place to look at, not a verdict: a pattern can be right where it is found. `make
 
 import argparse
 import ast
+import importlib.util
 import re
 import subprocess
 import sys
+import textwrap
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import cache
 from itertools import chain
@@ -22,6 +25,8 @@ from random import Random
 from typing import NamedTuple
 
 ROOT = Path(__file__).parents[1]
+MOST_LINES = 60
+"""The longest function that a reader gets in a mixed draw [lines]."""
 PATTERNS = {
     "headless what/who": r"^(What|Who|Whoever|Whatever)\b(?![^.]*\?)",
     "mid-sentence what/who": (
@@ -291,6 +296,45 @@ def draw(count: int, seed: int) -> None:
             print(f"{number:3}. {told.text}   [{told.file}:{told.line}]")
 
 
+def draw_among(count: int, seed: int, packages: Sequence[str], key: Path) -> None:
+    """Print functions with docstrings, half from the engine and half from installed packages, in random order.
+
+    The reader does not see which are whose; the file `key` gets their places. Functions longer than MOST_LINES are left
+    out.
+    """
+    random = Random(seed)
+    engine = [ROOT / file for file in files() if file.startswith(ENGINE) and file.endswith(".py")]
+    groups = [_functions(engine), *(_functions(_modules_of(package)) for package in packages)]
+    shares = [count // 2, *(count // 2 // len(packages) for _ in packages)]
+    drawn = [each for group, share in zip(groups, shares, strict=True) for each in random.sample(group, share)]
+    random.shuffle(drawn)
+    for number, (_, source) in enumerate(drawn, 1):
+        print(f"{number}.\n{source}\n")
+    key.write_text("".join(f"{number} {place}\n" for number, (place, _) in enumerate(drawn, 1)), encoding="utf-8")
+
+
+def _modules_of(package: str) -> list[Path]:
+    spec = importlib.util.find_spec(package)
+    if spec is None or not spec.submodule_search_locations:
+        raise SystemExit(f"there is no package {package} here: install it, or name another")
+    return sorted(Path(spec.submodule_search_locations[0]).rglob("*.py"))
+
+
+def _functions(modules: Iterable[Path]) -> list[tuple[str, str]]:
+    """Return the place and the source of each function that has a docstring of three words or more."""
+    found = []
+    for module in modules:
+        text = module.read_text(encoding="utf-8")
+        for node in ast.walk(ast.parse(text)):
+            if not isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
+                continue
+            lines = (node.end_lineno or node.lineno) - node.lineno + 1
+            if len((ast.get_docstring(node) or "").split()) >= 3 and lines <= MOST_LINES:
+                source = "\n".join(text.splitlines()[node.lineno - 1 : node.end_lineno])
+                found.append((f"{module}:{node.lineno}", textwrap.dedent(source)))
+    return found
+
+
 def _all(read: Callable[[str], Iterator[Prose]], listed: Iterable[str]) -> list[Prose]:
     return [told for file in listed for told in read(file)]
 
@@ -300,8 +344,15 @@ def main() -> int:
     parser.add_argument("paths", nargs="*", metavar="PATH", help="list each hit in these files and folders")
     parser.add_argument("--list", action="store_true", help="list each hit of the groups that exceed their limit")
     parser.add_argument("--draw", type=int, metavar="N", help="print N drawn messages, docstrings and sentences")
+    parser.add_argument("--among", nargs="+", metavar="PACKAGE", help="with --draw: functions, half of these packages")
+    parser.add_argument("--key", type=Path, help="with --among: the file for the places of the functions")
     parser.add_argument("--seed", type=int, default=1, help="of --draw (default: 1)")
     options = parser.parse_args()
+    if options.among:
+        if not options.draw or options.key is None:
+            parser.error("--among needs --draw and --key")
+        draw_among(options.draw, options.seed, options.among, options.key)
+        return 0
     if options.draw:
         draw(options.draw, options.seed)
         return 0
