@@ -64,6 +64,7 @@ def test_where_no_robot_answers_it_says_what_is_left(
     until(lambda: told == [{"command": "stop"}])
 
 
+@pytest.mark.network
 @pytest.mark.parametrize(
     ("url", "meant"), [("memory://", ["one"]), ("amqp://hall.local", ["one", "two"]), ("", ["one", "two"])]
 )
