@@ -5,7 +5,7 @@ The names are those of MuJoCo 3 (`mj_printSchema`). MuJoCo rejects any other nam
 
 from lumen.project.formats.known import FormatTable, Known
 
-_STAYS = "only MuJoCo uses it: it stays in the model"
+_STAYS = "used only by MuJoCo; stays in the model"
 
 
 def _known(read: str, stays: str) -> Known:
