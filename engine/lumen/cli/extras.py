@@ -18,7 +18,7 @@ class RunExtra(Protocol):
     """Options of `lumen run`, and what they change in an exhibition."""
 
     def configure(self, parser: argparse.ArgumentParser) -> None:
-        """Add the options."""
+        """Add these options to `parser`, the parser of `lumen run`."""
         ...
 
     def check(self, options: argparse.Namespace, parts: Sequence[str], robots: int) -> None:
@@ -40,7 +40,7 @@ class LintExtra(Protocol):
     """Options of `lumen lint`, and the findings that they add."""
 
     def configure(self, parser: argparse.ArgumentParser) -> None:
-        """Add the options."""
+        """Add these options to `parser`, the parser of `lumen lint`."""
         ...
 
     def check(self, options: argparse.Namespace) -> None:

@@ -23,7 +23,10 @@ _CLEAR = "\x1b[2J\x1b[H"
 def watch(
     projects: Sequence[LintTarget], judge: FindingsOf, format: str, ended: Callable[[], bool] = lambda: False
 ) -> int:
-    """Print the findings, and again after every change, until `ended` returns True or Ctrl-C is pressed; return 0."""
+    """Print the findings, and print them again after every change, until `ended` returns True or Ctrl-C is pressed.
+
+    Return 0. `ended` is called only after each printing. Ctrl-C before the first printing raises KeyboardInterrupt.
+    """
     changes: queue.SimpleQueue[tuple[int, SavedFiles]] = queue.SimpleQueue()
     found = [judge(what) for what in projects]
     with ExitStack() as stack:

@@ -51,7 +51,7 @@ _entries = _ByIdentity()
 
 
 def _prepared(phrases: Mapping[str, tuple[str, ...]]) -> tuple[str, ...]:
-    """Return the forms without slots, each with a space before and after it."""
+    """Return the phrases' forms (`lumen.talk.patterns`) without slots, each with a space before and after it."""
     found = (form for texts in phrases.values() for text in texts for form in forms(text) if form.plain)
     return tuple({f" {' '.join(form.literals)} ": None for form in found})
 
@@ -82,7 +82,10 @@ def is_heard(text: str, phrases: Mapping[str, tuple[str, ...]], lists: Lists = _
 
 
 def _is_caught(text: str, phrases: Mapping[str, tuple[str, ...]], lists: Lists) -> bool:
-    """Return True if a form with slots is in the text."""
+    """Return True if any phrase, with or without slots such as `{name}`, is in the text, even in a negation.
+
+    `lists` are the lists that slots may name; only those of the first call for these phrases are used.
+    """
     finder = _finders.get(phrases)
     if finder is None:
         entries = {name: [(phrases_in(entry), entry) for entry in rows] for name, rows in lists.items()}

@@ -49,9 +49,9 @@ class JournalWriter:
     The last entries are also in `tail`, for frequent requests. Without a folder, entries are only in `tail`, and
     positions count from 0.
 
-    If the disk refuses, or is too slow for `MAX_WAITING` entries, entries are lost: `lost` counts them, a gap marks
-    them in the journal, and `trouble` is the reason. If the run is `rehearsed`, a step waits for a slow disk, and a
-    power cut may lose the last entries.
+    If the disk refuses, or is too slow for `MAX_WAITING` entries, entries are lost, and a gap marks them in the
+    journal. `lost` counts those that the disk refused, and `trouble` is the first reason. If the run is `rehearsed`, a
+    step waits for a slow disk, and a power cut may lose the last entries.
     """
 
     def __init__(self, folder: JournalFolder | None, *, story: str = "", rehearsed: bool = False) -> None:
@@ -73,7 +73,12 @@ class JournalWriter:
         self._thread.start()
 
     def stepped(self, step: Step, how: How) -> None:
-        """Queue a step for writing. Call it on the thread that runs the behaviour."""
+        """Queue a step for writing. This method must be called on the thread that runs the behaviour.
+
+        If MAX_WAITING entries wait, the step is lost; if the run is `rehearsed`, the method first waits up to 5 s for
+        room. Later steps are lost, too, until at most half as many entries wait: the next step is then replaced by a
+        gap, which counts all steps lost.
+        """
         if self._rehearsed and len(self._waiting) >= MAX_WAITING:
             self.flush()
         if len(self._waiting) >= MAX_WAITING or (self._overflow and len(self._waiting) > MAX_WAITING // 2):
@@ -89,7 +94,11 @@ class JournalWriter:
     def jumped(
         self, kind: JumpKind, project: Project, snapshot: Snapshot, commands: Sequence[Command] = (), **said: Any
     ) -> None:
-        """Queue a change of the state without a step. Call it on the thread that runs the behaviour."""
+        """Queue a change of the state without a step, even if the queue is full.
+
+        The entry contains the number of steps lost just before it. This method must be called on the thread that runs
+        the behaviour.
+        """
         if self._overflow:
             said, self._overflow = {**said, "lost": self._overflow}, 0
         self._project = project
@@ -97,7 +106,7 @@ class JournalWriter:
         self._wake.set()
 
     def forget(self, person: PersonName) -> None:
-        """Queue the removal of a visitor's name from all files. Any thread may call it."""
+        """Queue the removal of a visitor's name from all files and `tail`. Any thread may call this method."""
         self._waiting.append(person)
         self._wake.set()
 

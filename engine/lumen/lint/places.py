@@ -64,7 +64,10 @@ def known_place(draft: ProjectDraft, report: DocumentReport, path: NodePath, nam
 
 
 def _named(draft: ProjectDraft) -> Iterator[tuple[DocumentReport, NodePath, str]]:
-    """Yield the places named by walks of behaviours, expectations of stories, and passages, each with its path."""
+    """Yield each place that a walk, a story's expectation or a passage names, with the report and path of the name.
+
+    Computed names are left out, except those from list entries (`_listed`).
+    """
     for behavior, machine in draft.behaviors.items():
         for site in action_sites(machine):
             if isinstance(site.step.action, GoTo) and "{{" not in site.step.action.to:
@@ -80,7 +83,11 @@ def _named(draft: ProjectDraft) -> Iterator[tuple[DocumentReport, NodePath, str]
 
 
 def _listed(draft: ProjectDraft, machine: MachineDefinition) -> Iterator[tuple[DocumentReport, NodePath, str]]:
-    """Yield the places in entries of lists to which a walk inside a `for` leads."""
+    """Yield the places that walks of a behaviour read from list entries, each with the report and path of its value.
+
+    Such a walk leads to a field of the entry that a `for` over a list has reached: `{{ context.KEY.entry.FIELD }}`.
+    Fields that are missing or not texts are left out.
+    """
     loops = {state.for_each.key: state.for_each for state in machine.states.values() if state.for_each}
     walks = {step.to for site in action_sites(machine) if isinstance(step := site.step.action, GoTo)}
     for found in filter(None, map(_ENTRY.fullmatch, sorted(walks))):

@@ -10,7 +10,11 @@ from lumen.project.draft import ProjectDraft
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report fields that a schema forbids, and fields that probably misspell a described field."""
+    """Report fields in bodies of published messages that the route's schema forbids, or that are probably misspelt.
+
+    Only top-level fields are checked, and only if the schema has `properties`. A line that already has a finding gets
+    no other.
+    """
     routes = draft.settings.routes if draft.settings else {}
     for name, machine in draft.behaviors.items():
         for site in action_sites(machine):

@@ -53,7 +53,7 @@ class SurfaceSamples(NamedTuple):
 
 
 def sample_surface(controller: ControllerDefinition) -> SurfaceSamples:
-    """Sample a controller's outputs over each input, over combinations of inputs, and at rest."""
+    """Sample a controller's outputs over each input, over combinations of input values, and at rest."""
     survey = Survey(controller)
     slices = list(survey.slices())
     smooth = [
@@ -77,7 +77,11 @@ def sample_surface(controller: ControllerDefinition) -> SurfaceSamples:
 
 
 def _corners(controller: ControllerDefinition) -> Iterator[dict[str, float]]:
-    """Yield combinations of the inputs, if several inputs affect one output; none if there are too many."""
+    """Yield combinations of values of the bounded inputs, if any output depends on several inputs.
+
+    Unbounded inputs are left out. CORNERS are the maximum number of evenly spread values of each input, and of the
+    combinations: many inputs have fewer values each. If even two values each are too many, nothing is yielded.
+    """
     names = [n for n, v in controller.inputs.items() if abs(v.minimum) < 1e300 and abs(v.maximum) < 1e300]
     points, most = CORNERS
     while len(names) > 1 and points > 1 and points ** len(names) > most:

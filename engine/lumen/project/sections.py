@@ -111,7 +111,11 @@ def with_sections(schema: dict[str, Any]) -> dict[str, Any]:
 
 
 def _read(row: Section, data: Mapping[str, Any], report: DocumentReport) -> object:
-    """Return the settings of a section. Raises any exception of its feature, and TypeError for another result."""
+    """Return the settings of a section, as its feature reads them.
+
+    Raises TypeError if the section's schema can't be used, if the settings are not a dataclass, or if their field
+    `row.entries` is not a mapping. Exceptions of the feature's code are not caught.
+    """
     if row.schema:
         _schema(row.schema)
     settings: object = resolve(row.read)(data, report)

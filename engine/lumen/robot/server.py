@@ -100,7 +100,11 @@ class RobotServer:
         return self._orders.waiting
 
     def sample(self, now: float) -> None:
-        """Read the senses that are due at `now` [s] and publish them; begin the commands that have arrived."""
+        """Read and publish the senses that are due at `now` [s]; begin the commands that have arrived.
+
+        A route whose sense is off is skipped. So is a route without subscribers if it carries images or is `of` a
+        sense.
+        """
         for name, route in self._routes.items():
             if now + TIME_EPSILON >= self._next[name] and not self._broadcasts[name].count.off:
                 self._schedule(name, route, now)

@@ -33,7 +33,7 @@ class ExploredFinding:
     """The file, line and column of the finding."""
     message: str
     story: str
-    """The YAML of a story that leads to the finding."""
+    """The YAML of a story that leads to the finding, as far as a story can (`story`)."""
 
 
 @dataclass(frozen=True)
@@ -98,7 +98,11 @@ def outside(project: Project, machine: MachineDefinition) -> Mapping[str, Any]:
 
 
 def story(project: Project, behavior: str, finding: ExplorationFinding) -> str:
-    """Return the YAML of a story that leads to a finding."""
+    """Return the YAML of a story that leads to a finding.
+
+    In a story, a kind of command, such as `say`, fails or hangs from the beginning or not at all. If it also works on
+    the path to the finding, the story can't follow this path; it then contains a comment about this.
+    """
     robot = dict(_broken(finding.path))
     lines = [HEAD, f"title: {_flow(finding.message)}"]
     lines += [f"behavior: {_flow(behavior)}"] if behavior != project.behavior else []

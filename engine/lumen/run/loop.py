@@ -116,7 +116,7 @@ class Observer:
         """Called when the robot answered a command or noticed something, before the behaviour receives the event."""
 
     def troubled(self, trouble: RunTrouble) -> None:
-        """Called when a trouble occurs, after which the run no longer counts as successful."""
+        """Called when a problem occurs, such as a fall; unless a story expects it, the run then counts as failed."""
 
 
 class Rescuer(Protocol):

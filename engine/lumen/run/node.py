@@ -320,7 +320,7 @@ class Node:
                 part.helpless(thread.lost)
 
     def _follow(self, clock: FollowingClock, presence: Presence) -> None:
-        """Follow the robot's time, if its process publishes it."""
+        """Follow the robot's time if its process publishes it; tick the clock in any case."""
         robot = presence.find(ROBOT_PART)
         if robot and isinstance(at := robot.said.get("time"), int | float):
             clock.follow(robot.session, float(at), robot.heard)

@@ -107,7 +107,10 @@ class Runtime:
         return [command for emission in self.advance(now, events) for command in emission.commands]
 
     def advance(self, now: float, events: Iterable[Event] = ()) -> list[Emission]:
-        """Process timers and events as `tick` does; return the commands by step, without steps that have none."""
+        """Process timers and events as `tick` does; return the commands grouped by step.
+
+        Steps without commands are omitted. A rescue's commands form their own group, with the number of the last step.
+        """
         emitted: list[Emission] = []
         for event in sorted(events, key=lambda e: e.at):
             self._timers(min(event.at, now), emitted)

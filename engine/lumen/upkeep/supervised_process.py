@@ -97,7 +97,10 @@ class SupervisedProcess:
             _kill(self._process)
 
     def close(self) -> None:
-        """End the program and everything it started: SIGTERM, then SIGKILL after END_TIMEOUT. May be called again."""
+        """End the program and everything that it started, for good; repeated calls do nothing.
+
+        A running program gets SIGTERM. When it has ended, or after END_TIMEOUT, its process group gets SIGKILL.
+        """
         self._closed = True
         if (process := self._process) is None:
             return

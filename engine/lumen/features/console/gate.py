@@ -106,7 +106,10 @@ def _same_address(name: str, here: str) -> bool:
 
 
 async def _read(receive: Receive, headers: Mapping[str, str]) -> tuple[bytes, tuple[int, str] | None]:
-    """Return the body and None, or an empty body with the status and the reason of a refusal."""
+    """Return the request body and None.
+
+    If the body is too large or incomplete, return an empty body, and the HTTP status and the reason for the refusal.
+    """
     too_large = 413, f"the request body is too large: send at most {MAX_BODY} bytes"
     length = headers.get("content-length", "0")
     if length.isdigit() and int(length) > MAX_BODY:

@@ -59,7 +59,7 @@ def memory_file(robot: str) -> str:
 
 
 def remember(home: Home, robot: str) -> AgentMemory:
-    """Return the saved state, or an empty state if it is missing or unreadable."""
+    """Return the memory of the robot's agent saved in `home`; an empty memory if the file is missing or invalid."""
     data = home.read_json(memory_file(robot))
     if not isinstance(data, Mapping):
         return AgentMemory()
@@ -71,5 +71,5 @@ def remember(home: Home, robot: str) -> AgentMemory:
 
 
 def keep(home: Home, robot: str, memory: AgentMemory) -> str:
-    """Save the state in the robot's home; return the error, else an empty string."""
+    """Save the memory of the robot's agent in `home`; return an error message if that failed, else an empty string."""
     return home.write_json(memory_file(robot), asdict(memory))

@@ -161,7 +161,10 @@ class _FclReader:
         return text[: begins[1].start()]
 
     def tell_outside(self, text: str, sections: list[FclSection]) -> None:
-        """Report any text before, between and after the sections, at its first word."""
+        """Report each text before, between or after the sections, at its first word.
+
+        `FUNCTION_BLOCK NAME`, `END_FUNCTION_BLOCK` and `;` at the beginning of such a text are skipped.
+        """
         for begin, end in zip([0, *(s.end for s in sections)], [*(s.offset for s in sections), len(text)], strict=True):
             outside = text[begin:end]
             at = 0
@@ -231,7 +234,10 @@ class _FclReader:
                 self.findings.lost(self.at(statement), f"`{match['rest'][:40]}` in a declaration is left out")
 
     def asked(self, sections: list[FclSection]) -> None:
-        """Add inputs without terms that formulas use, with their declared or else an infinite range."""
+        """Add the inputs that formulas use but that have no FUZZIFY section, and so no terms.
+
+        Each gets its declared range; an end that is missing or can't be read is infinite.
+        """
         formulas = " ".join(t.text for s in sections if s.kind == "DEFUZZIFY" for t in s.statements)
         words = set(
             re.findall(r"[A-Za-z_]\w*", " ".join(re.findall(r"(?i):=\s*FUNCTION\b(.*?)(?= TERM |$)", formulas)))

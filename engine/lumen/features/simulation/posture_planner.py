@@ -20,7 +20,7 @@ LYING_TILT = pi / 3
 """The torso's tilt beyond which the robot is lying [rad]; a relaxed, sitting robot tilts half as much."""
 
 SETTLING_TIME, REST_TIME = 1.5, 0.4
-"""The time to bring a lying or sitting robot's joints to its posture, and the rest after a passage [s]."""
+"""The time to bring a lying or sitting robot's joints to its posture, and the pause after a passage [s]."""
 
 
 class UprightSensor(Protocol):
@@ -91,9 +91,10 @@ class PosturePlanner:
         return isinstance(self._step, _Passing)
 
     def advance(self, now: float) -> bool:
-        """Continue until `now` [s]; return True at the end.
+        """Continue the route for `now` [s]; return True at its end, or at rest after `cancel`.
 
-        Raises RobotFailedError if the robot did not reach the posture.
+        Raises RobotFailedError if the robot did not reach a posture and does not try again, RobotRefusedError if no
+        route leads to a goal from where it lies.
         """
         if self._step is not None and not self._step.advance(now):
             return False
@@ -157,7 +158,7 @@ class _Straight:
         self._transition = JointTransition(motors, body.postures[end], now, seconds)
 
     def advance(self, now: float) -> bool:
-        """Continue until `now` [s]; return True at the end."""
+        """Set the joints' goals for `now` [s]; return True at the posture, or at rest after `cancel`."""
         return self._transition.advance(now)
 
     def cancel(self) -> None:
@@ -166,7 +167,7 @@ class _Straight:
 
 
 class _Passing:
-    """Moves along a passage from the time `reached` [s], then rests."""
+    """Moves along a passage from the time `reached` [s], then pauses for REST_TIME."""
 
     def __init__(self, motors: Motors, motion: MotionDefinition, now: float, reached: float = 0.0) -> None:
         self.motion, self.end, self.reached = motion, motion.end, reached
@@ -174,7 +175,7 @@ class _Passing:
         self._trajectory = Trajectory(motion, motors.wanted(motion.tracks) if not reached else None)
 
     def advance(self, now: float) -> bool:
-        """Continue until `now` [s]; return True after the rest."""
+        """Set the joints' goals on the passage for `now` [s]; return True once REST_TIME has passed since its end."""
         self.reached = min(now - self._begin, self.motion.duration)
         self._motors.aim(self._trajectory.sample(self.reached))
         return now - self._begin >= self.motion.duration + REST_TIME

@@ -46,7 +46,7 @@ def _state(data: Mapping[str, Any]) -> yaml.Node:
 
 
 def _part(key: str, value: Any) -> yaml.Node:
-    """Return the node of the value under a key of a state."""
+    """Return the YAML node for the value under a key of a state."""
     if key == "states":
         return _mapping({name: _state(state or {}) for name, state in value.items()}, flow=False)
     if key in _TABLES and isinstance(value, Mapping):
@@ -57,7 +57,11 @@ def _part(key: str, value: Any) -> yaml.Node:
 
 
 def _compact(value: Any) -> yaml.Node:
-    """Return the node of a value: on one line if it is short, else with one line for each of its parts."""
+    """Return the YAML node for a value.
+
+    A map or list is on one line if its JSON has at most MAX_FLOW_WIDTH characters. Otherwise it is a block, to whose
+    parts the same rule applies.
+    """
     flow = not isinstance(value, Mapping | list) or len(json.dumps(value, ensure_ascii=False)) <= MAX_FLOW_WIDTH
     match value:
         case Mapping():

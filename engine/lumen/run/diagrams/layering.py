@@ -47,9 +47,10 @@ class Layering(NamedTuple):
 
 
 def layered(sizes: Mapping[N, Extent], edges: Sequence[Edge[N]], widest: float) -> Layering:
-    """Return nodes laid out in layers from top to bottom, each layer at most `widest` [px] wide if possible.
+    """Return a layout of nodes in layers from top to bottom; edges lead downwards, except those that close a cycle.
 
-    An edge that leads upwards is laid out as if it led downwards.
+    The nodes of a layer are together at most `widest` [px] wide, unless a single node is wider. Arrows that pass
+    through the layer may widen it. An edge from a node to itself is left out.
     """
     down = _without_cycles(list(sizes), edges)
     ranks = _narrow(_ranks(list(sizes), down), sizes, widest)

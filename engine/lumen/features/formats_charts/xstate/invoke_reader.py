@@ -100,7 +100,7 @@ class XStateInvokeReader:
     def _rows(self, state: XStateNode) -> Iterator[tuple[int, NodePath, Mapping[str, Any]]]:
         """Yield the number, place and object of each item of `invoke`; report invalid items.
 
-        A name alone (version 4) becomes an object with this `src`.
+        An item that is only a name (XState 4) becomes an object with that name as its `src`.
         """
         data, where = state.source.get("invoke"), (*state.where, "invoke")
         rows = [((*where, i), row) for i, row in enumerate(data)] if isinstance(data, list) else [(where, data)]
