@@ -66,3 +66,12 @@ def test_passages_are_compared_by_the_same_words() -> None:
 )
 def test_clauses_end_at_punctuation(text: str, clauses: list[int]) -> None:
     assert read_words(text).clauses == clauses
+
+
+def test_a_slot_is_filled_from_the_lists_of_this_call() -> None:
+    phrases = {"en": ("show me the {exhibit}",)}
+    old, new = ({"exhibit": [{"name": name, "phrases": [name]}]} for name in ("organ", "globe"))
+    for _ in range(2):
+        for lists, there, absent in ((old, "organ", "globe"), (new, "globe", "organ")):
+            assert is_heard(f"please show me the {there}", phrases, lists)
+            assert not is_heard(f"please show me the {absent}", phrases, lists)

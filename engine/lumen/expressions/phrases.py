@@ -47,6 +47,7 @@ _last = [("", "")]
 
 _answers = _ByIdentity()
 _finders = _ByIdentity()
+"""For each table of phrases, the finders by the lists that its slots may name."""
 _entries = _ByIdentity()
 
 
@@ -84,12 +85,13 @@ def is_heard(text: str, phrases: Mapping[str, tuple[str, ...]], lists: Lists = _
 def _is_caught(text: str, phrases: Mapping[str, tuple[str, ...]], lists: Lists) -> bool:
     """Return True if any phrase, with or without slots such as `{name}`, is in the text, even in a negation.
 
-    `lists` are the lists that slots may name; only those of the first call for these phrases are used.
+    `lists` are the lists that slots may name.
     """
-    finder = _finders.get(phrases)
+    finders = _finders.get(phrases) or _finders.put(phrases, _ByIdentity())
+    finder = finders.get(lists)
     if finder is None:
         entries = {name: [(phrases_in(entry), entry) for entry in rows] for name, rows in lists.items()}
-        finder = _finders.put(phrases, Finder(Speech({}, {}), {"": phrases}, lists=entries))
+        finder = finders.put(lists, Finder(Speech({}, {}), {"": phrases}, lists=entries))
     reading = finder.read(text)
     return bool(reading.finds or finder.slotted(reading))
 
