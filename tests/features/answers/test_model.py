@@ -10,7 +10,7 @@ from lumen.features.answers.sentence_check import refusal, sentences
 from tests.features.answers.conftest import LONGEST, Desk
 from tests.features.answers.fake_model import Handler, Reply, calls, fake_model, says
 from tests.tables import for_each
-from tests.waiting import HANG
+from tests.waiting import HANG, until
 
 Make = Callable[..., Desk]
 PASSAGES = ["This organ has two thousand pipes. It was built by Johann in 1894."]
@@ -131,6 +131,7 @@ FAULTS: list[tuple[str, Reply, list[str], str]] = [
 def test_no_fault_says_more_than_what_may_be_said(desk: Make, reply: Reply, said: list[str], told: str) -> None:
     here = desk(reply)
     assert here.said(passages=PASSAGES, offers=WISH, within=0.5 if reply in (hangs, drips) else LONGEST) == said
+    until(lambda: here.told or not told)  # the operator's line comes after the end of the answer
     assert len(here.told) == bool(told)
     assert told in "".join(here.told)
     assert "sk-secret" not in "".join(here.told)

@@ -2,14 +2,22 @@ from collections.abc import Iterator
 
 import pytest
 
+from lumen.features.reachy import link
 from lumen.language.projects import Project
 from tests.features.reachy.driving import Driven, reachy_project
 from tests.features.reachy.fake import FakeDaemon
+from tests.waiting import HANG
 
 
 @pytest.fixture(scope="session")
 def project() -> Project:
     return reachy_project()
+
+
+@pytest.fixture
+def patient(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A daemon on a crowded machine may be silent for longer than on a robot, before it counts as lost."""
+    monkeypatch.setattr(link, "SILENCE", HANG)
 
 
 @pytest.fixture

@@ -101,6 +101,7 @@ def test_a_second_wake_ends_the_tail_of_going_to_sleep(awake: Driven, daemon: Fa
     assert daemon.joints == pytest.approx(INIT, abs=0.02)
 
 
+@pytest.mark.usefixtures("patient")
 def test_two_robots_at_once(project: Project) -> None:
     daemons = FakeDaemon(), FakeDaemon()
     robots = [Driven(project, one.url) for one in daemons]

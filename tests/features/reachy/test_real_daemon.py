@@ -20,7 +20,12 @@ from tests.features.reachy.protocol import RECORDED, observed
 from tests.features.reachy.real_daemon import RealDaemon, program
 from tests.waiting import until
 
-pytestmark = [pytest.mark.xdist_group("reachy daemon"), pytest.mark.rest, pytest.mark.process]
+pytestmark = [
+    pytest.mark.xdist_group("reachy daemon"),
+    pytest.mark.rest,
+    pytest.mark.process,
+    pytest.mark.usefixtures("patient"),
+]
 
 
 @pytest.fixture(scope="module")

@@ -7,7 +7,6 @@ from pathlib import Path
 import pytest
 
 from lumen.errors import RobotError, UsageError
-from lumen.features.reachy import link
 from lumen.features.reachy.daemon_api import DaemonAddress
 from lumen.features.reachy.pose import BODY, JOINTS
 from lumen.features.reachy.robot import ReachyRobot
@@ -17,13 +16,8 @@ from lumen.ports import Aim, Live, Perform, Record, RobotCommand, Sense
 from tests.features.reachy.driving import Driven
 from tests.features.reachy.fake import ASLEEP, INIT, FakeDaemon
 from tests.tables import for_each
-from tests.waiting import HANG
 
-
-@pytest.fixture(autouse=True)
-def patient(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A fake daemon on a crowded machine may be silent for longer than the real one, before it counts as lost."""
-    monkeypatch.setattr(link, "SILENCE", HANG)
+pytestmark = pytest.mark.usefixtures("patient")
 
 
 def data(robot: Driven, id: str, command: RobotCommand) -> str:

@@ -12,7 +12,7 @@ from tests.features.reachy.fake import FakeDaemon
 from tests.tour.conftest import copied
 from tests.waiting import until
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("patient")]
 
 
 def test_the_shipped_tour_greets_and_says_goodbye(
