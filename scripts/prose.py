@@ -306,7 +306,11 @@ def draw_among(count: int, seed: int, packages: Sequence[str], key: Path) -> Non
     engine = [ROOT / file for file in files() if file.startswith(ENGINE) and file.endswith(".py")]
     groups = [_functions(engine), *(_functions(_modules_of(package)) for package in packages)]
     shares = [count // 2, *(count // 2 // len(packages) for _ in packages)]
-    drawn = [each for group, share in zip(groups, shares, strict=True) for each in random.sample(group, share)]
+    drawn = [
+        each
+        for group, share in zip(groups, shares, strict=True)
+        for each in random.sample(group, min(share, len(group)))
+    ]
     random.shuffle(drawn)
     for number, (_, source) in enumerate(drawn, 1):
         print(f"{number}.\n{source}\n")
