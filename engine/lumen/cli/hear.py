@@ -10,15 +10,13 @@ from lumen.cli.formats import configure_format, print_object
 from lumen.cli.projects import shown_project
 from lumen.cli.tables import table
 from lumen.errors import UsageError
-from lumen.insight.explaining.sayings import caught_text, path_of
+from lumen.insight.explaining.sayings import caught_text
 from lumen.insight.explaining.sentences import (
     ExplainedRow,
     ExplainedSentence,
     FoundPhrase,
     explained,
     first_context,
-    hearing_states,
-    rows_around,
 )
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.machines import MachineDefinition
@@ -79,23 +77,23 @@ def _machine(project: Project, name: str | None) -> MachineDefinition:
     if name not in project.behaviors:
         raise UsageError(f"no behaviour `{name}`: {did_you_mean(name, project.behaviors, 'behaviors/ has')}")
     machine = project.behaviors[name]
-    if not hearing_states(machine):
+    if not machine.hearing_states:
         raise UsageError(f"no state of `{name}` has `hears`: add it to one")
     return machine
 
 
 def _paths(machine: MachineDefinition, state: str | None) -> list[str]:
     """Return the path of the chosen state, or of all states that hear. Raises UsageError if the state hears nothing."""
-    hearing = hearing_states(machine)
+    hearing = machine.hearing_states
     if state is None:
         return [one.path for one in hearing]
     names = [one.name for one in hearing if one.path]
     try:
-        path = path_of(machine, state)
+        path = machine.path_of(state)
     except KeyError:
         known = [one.name for one in machine.states.values() if one.path]
         raise UsageError(f"no state `{state}`: {did_you_mean(state, known, 'there are')}") from None
-    if not rows_around(machine, path):
+    if not machine.rows_around(path):
         raise UsageError(f"neither `{state}` nor a state around it has `hears`: {did_you_mean('', names, 'choose')}")
     return [path]
 

@@ -237,3 +237,23 @@ class MachineDefinition:
         """Return the behaviour that the state at that path invokes under that id; empty if it invokes none."""
         invokes = self.states[path].invoke if path in self.states else ()
         return next((invoke.behavior for invoke in invokes if invoke.id == id), "")
+
+    def path_of(self, name: str) -> str:
+        """Return the path of the state with that id or path. Raises KeyError if no state has it."""
+        found = next((state.path for state in self.states.values() if name == state.alias), name)
+        return self.states[found].path
+
+    @property
+    def hearing_states(self) -> list[State]:
+        """The states that have rows of `hears`, in document order."""
+        return [state for state in self.states.values() if any(t.hears for t in state.transitions)]
+
+    def rows_around(self, path: str) -> list[Hears]:
+        """Return the rows of `hears` of a state and of the states around it, inner states first."""
+        found: list[Hears] = []
+        at: str | None = path
+        while at is not None:
+            state = self.states[at]
+            found += [t.hears for t in state.transitions if t.hears]
+            at = state.parent
+        return found

@@ -5,8 +5,15 @@ import unicodedata
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-_SPACELESS = re.compile("[\u0e00-\u0eff\u1000-\u109f\u1780-\u17ff\u3040-\u30ff\u3400-\u9fff\uac00-\ud7af]")
-"""A character of a script without spaces between words, or with endings joined to names."""
+_SPACELESS = (
+    ("\u0e00", "\u0eff"),
+    ("\u1000", "\u109f"),
+    ("\u1780", "\u17ff"),
+    ("\u3040", "\u30ff"),
+    ("\u3400", "\u9fff"),
+    ("\uac00", "\ud7af"),
+)
+"""The first and last character of each script without spaces between words, or with endings joined to names."""
 _CLUSTER = re.compile(r"\s+|.", re.DOTALL)
 
 
@@ -114,6 +121,10 @@ def _mapped(text: str) -> tuple[str, list[int]]:
 
 def _words(key: str) -> str:
     """Return a pattern for a key as whole words."""
-    before = "" if not key or _SPACELESS.match(key[0]) else r"(?<!\w)"
-    after = "" if not key or _SPACELESS.match(key[-1]) else r"(?!\w)"
+    before = "" if not key or _is_spaceless(key[0]) else r"(?<!\w)"
+    after = "" if not key or _is_spaceless(key[-1]) else r"(?!\w)"
     return before + re.escape(key) + after
+
+
+def _is_spaceless(character: str) -> bool:
+    return any(first <= character <= last for first, last in _SPACELESS)

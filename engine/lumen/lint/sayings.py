@@ -1,8 +1,6 @@
 """Sayings as tests: whether the behaviour, state, row and slots that they name exist."""
 
 from lumen.expressions.expression_findings import UNKNOWN_STATE
-from lumen.insight.explaining.sayings import path_of
-from lumen.insight.explaining.sentences import hearing_states, rows_around
 from lumen.language.diagnostics import ERROR, Code, did_you_mean
 from lumen.language.folders import SAYINGS_FOLDER
 from lumen.language.machines import Hears, MachineDefinition
@@ -34,9 +32,9 @@ def _refused(report: DocumentReport, machine: MachineDefinition, saying: Saying)
     """Report the faults of a saying; return the paths of unknown states and rows, which are reported only once."""
     behavior, state, key = where = saying.behavior, saying.state, saying.row
     try:
-        rows = rows_around(machine, path_of(machine, state))
+        rows = machine.rows_around(machine.path_of(state))
     except KeyError:
-        names = [state.name for state in hearing_states(machine)]
+        names = [state.name for state in machine.hearing_states]
         message = f"`{behavior}` has no state `{state}`"
         cause = f"behaviors/{behavior}.yaml state {state}"
         report(
@@ -44,7 +42,7 @@ def _refused(report: DocumentReport, machine: MachineDefinition, saying: Saying)
         )
         return {where[:2]}
     if not rows:
-        names = [state.name for state in hearing_states(machine)]
+        names = [state.name for state in machine.hearing_states]
         hint = did_you_mean(state, names, "states with `hears`:") if names else "give it `hears`"
         message = f"neither `{state}` nor a state around it has `hears`"
         report(UNKNOWN_ROW, where[:2], message, hint, key=True)

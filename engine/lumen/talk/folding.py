@@ -2,12 +2,12 @@
 
 import re
 from collections.abc import Iterator
-from functools import lru_cache
+from functools import cache, lru_cache
 from typing import NamedTuple
 from unicodedata import category, normalize
 
 APOSTROPHES = frozenset("'’ʼ‘`´")
-BLANKS = "".join(chr(code) for code in range(0x3001) if chr(code).isspace() and not 0x1C <= code <= 0x1F)
+BLANKS = "\t\n\v\f\r \x85\xa0\u1680" + "".join(map(chr, range(0x2000, 0x200B))) + "\u2028\u2029\u202f\u205f\u3000"
 """Unicode's White_Space; Python also counts four separators of records."""
 
 MAX_TEXT_EXAMINED = 1_000
@@ -29,11 +29,9 @@ _UNWRITTEN = [*range(0x064B, 0x0653), 0x0670, *range(0x0591, 0x05BE), 0x05BF, 0x
 _WITHOUT_BLANKS = "\u0e00-\u0eff\u1000-\u109f\u1780-\u17ff\u3005-\u3007\u3040-\u30ff\u3400-\u9fff\uf900-\ufaff"
 """Thai, Lao, Burmese, Khmer, Japanese and Chinese letters: there are no blanks between words."""
 
-_PIECES = re.compile(rf"[{_WITHOUT_BLANKS}]|[^{_WITHOUT_BLANKS}]+")
 _TITLES = frozenset(
     ("dr", "mr", "mrs", "ms", "mx", "prof", "st", "ir", "drs", "dra", "hj", "sr", "sra", "mme", "fr", "hr")
 )
-_UNBROKEN = re.compile(rf"[{_WITHOUT_BLANKS}]")
 
 
 class _WordsOnly(dict[int, str | int]):
@@ -76,12 +74,18 @@ def unbroken(text: str) -> list[str]:
     return plain.translate(_FOLDED).split()
 
 
+@cache
+def _pieces_pattern() -> re.Pattern[str]:
+    """Return the pattern of a letter without blanks, or of all letters up to one. Compiling it takes milliseconds."""
+    return re.compile(rf"[{_WITHOUT_BLANKS}]|[^{_WITHOUT_BLANKS}]+")
+
+
 def _pieces(word: str) -> Iterator[str]:
-    if not _UNBROKEN.search(word):
+    if max(word) < _WITHOUT_BLANKS[0]:
         yield word
         return
     piece = ""
-    for part in _PIECES.findall(word):
+    for part in _pieces_pattern().findall(word):
         if piece and not category(part[0]).startswith("M"):
             yield piece
             piece = ""

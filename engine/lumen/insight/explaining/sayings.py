@@ -30,16 +30,10 @@ def tried(sets: Iterable[SayingSet], machines: Mapping[str, MachineDefinition]) 
     for each in sets:
         for saying in each.sayings:
             machine = machines[saying.behavior]
-            path = path_of(machine, saying.state)
+            path = machine.path_of(saying.state)
             found = explained(machine, path, saying.text, contexts[saying.behavior], saying.language)
             took = found.taken.key if found.taken else ""
             yield TriedSaying(f"{SAYINGS_FOLDER}/{each.name}.yaml", saying, took, _wrong(saying, found))
-
-
-def path_of(machine: MachineDefinition, name: str) -> str:
-    """Return the path of the state with that id or path. Raises KeyError if no state has it."""
-    found = next((state.path for state in machine.states.values() if name == state.alias), name)
-    return machine.states[found].path
 
 
 def _wrong(saying: Saying, found: ExplainedSentence) -> str:

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 from lumen.expressions import ExpressionError, Scope, compile_expression, compile_guard
-from lumen.language.machines import Hears, MachineDefinition, State, Transition
+from lumen.language.machines import Hears, MachineDefinition, Transition
 from lumen.statechart.chart import CompiledGuard, CompiledTransition, StateNode
 from lumen.statechart.compiled_machine import compiled
 from lumen.statechart.state_changes import names_of
@@ -123,22 +123,6 @@ def first_context(machine: MachineDefinition) -> Mapping[str, Any]:
         if isinstance(entries, list | tuple) and entries:
             context[loop.key] = {"entry": entries[0], "left": entries[1:]}
     return context
-
-
-def hearing_states(machine: MachineDefinition) -> list[State]:
-    """Return the states that have rows of `hears`, in document order."""
-    return [state for state in machine.states.values() if any(t.hears for t in state.transitions)]
-
-
-def rows_around(machine: MachineDefinition, path: str) -> list[Hears]:
-    """Return the rows of `hears` of a state and of the states around it, inner states first."""
-    found: list[Hears] = []
-    at: str | None = path
-    while at is not None:
-        state = machine.states[at]
-        found += [t.hears for t in state.transitions if t.hears]
-        at = state.parent
-    return found
 
 
 class _Sentence:
