@@ -9,14 +9,13 @@ RUNS, SECONDS = 7, 0.25
 
 
 def rate(work: Callable[[int], int]) -> float:
-    """Return the events per second: the median of several runs of about 0.25 s each, after one to warm up.
+    """Return the events per second: the median of several runs of 0.25 to 0.5 s, after shorter ones to warm up.
 
     `work` processes that many events and returns the number of its assignments, which must be the same.
     """
     count = 100
-    while (spent := _time(work, count)) < SECONDS / 5:
-        count *= 4
-    count = max(count, int(count * SECONDS / spent))
+    while _time(work, count) < SECONDS:  # the first events also compile the steps that they need
+        count *= 2
     gc.collect()
     return count / median(_time(work, count) for _ in range(RUNS))
 

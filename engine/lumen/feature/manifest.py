@@ -370,6 +370,11 @@ class Feature(NamedTuple):
     """Roles of one of several processes: `lumen run --only ROLE` makes the parts with the condition `role:ROLE`."""
     rules: tuple[str, ...] = ()
     """Functions that report faults of a `ProjectDraft`. Their modules declare the codes of these reports."""
+    section_rules: Mapping[str, str] = {}
+    """By a section of lumen.yaml, or the name of a file next to it: the rule that runs if the project has it.
+
+    A project without it does not import the rule's module.
+    """
     last_rules: tuple[str, ...] = ()
     """Rules that run after all others, because they report unused names."""
     codes: tuple[str, ...] = ()

@@ -18,6 +18,7 @@ from lumen.project.draft import ProjectDraft
 from lumen.project.files import read_files
 from lumen.project.looks import Looks
 from lumen.project.packaged import find_project
+from lumen.project.sections import has_section
 
 
 def check(path: str | Path | None = None) -> list[Diagnostic]:
@@ -58,11 +59,19 @@ def _checked(
     """Return the draft that these files make for one robot, and all findings in them."""
     found = draft(files)
     found.root, found.today, found.looks = root, date.today(), looks
-    for feature, rule in chain(rows("rules"), rows("last_rules")):
+    for feature, rule in chain(rows("rules"), _section_rules(found), rows("last_rules")):
         between()
         _apply(feature, rule, found)
     documents = {file: report.document for file, report in found.reports.items()}
-    return found, obey(found.diagnostics, documents, codes())
+    return found, obey(found.diagnostics, documents, codes)
+
+
+def _section_rules(found: ProjectDraft) -> Iterator[tuple[Feature, str]]:
+    """Yield the rules of the sections and files that the project has."""
+    data = found.main.document.data if found.main else None
+    for feature, (name, rule) in rows("section_rules"):
+        if name in found.reports or has_section(data, name):
+            yield feature, rule
 
 
 def _apply(feature: Feature, rule: str, found: ProjectDraft) -> None:

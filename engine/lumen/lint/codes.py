@@ -38,7 +38,8 @@ def families() -> Mapping[str, Mapping[str, Code]]:
 
 
 def _declared() -> Iterator[Code]:
-    for feature, where in chain(rows("rules"), rows("last_rules"), rows("codes")):
+    of_sections = ((feature, where) for feature, (_, where) in rows("section_rules"))
+    for feature, where in chain(rows("rules"), of_sections, rows("last_rules"), rows("codes")):
         found: Mapping[str, object] = {}
         with faults_reported(feature, where, []):  # lint reports such a fault
             found = vars(resolve(where.partition(":")[0]))

@@ -5,7 +5,7 @@ Errors can't be ignored: they prevent the start in any case.
 """
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import NamedTuple
 
 from lumen.language.diagnostics import WARNING, Code, Diagnostic, Place, Severity, did_you_mean, has_errors
@@ -36,9 +36,12 @@ class Ignore(NamedTuple):
 
 
 def obey(
-    diagnostics: Iterable[Diagnostic], documents: Mapping[str, Document], codes: Mapping[str, Code]
+    diagnostics: Iterable[Diagnostic], documents: Mapping[str, Document], codes: Callable[[], Mapping[str, Code]]
 ) -> tuple[Diagnostic, ...]:
-    """Return the findings that are not ignored, and the faults of ignore comments, by file and line."""
+    """Return the findings that are not ignored, and the faults of ignore comments, by file and line.
+
+    `codes` returns all codes. It imports all modules that declare some, so it is called only for a comment.
+    """
     found = list(diagnostics)
     comments = [c for d in documents.values() if "ignore" in d.text for c in comments_of(d)]
     if not comments:
@@ -47,7 +50,7 @@ def obey(
     hidden = [d for d in found if d.severity is not Severity.ERROR and _spot(d) in by_line]
     gone = {_spot(d) for d in hidden}
     said = [*(d for d in found if d not in hidden)]
-    said += [f for c in comments for f in _faults(c, gone, codes, whole=not has_errors(found))]
+    said += [f for c in comments for f in _faults(c, gone, codes(), whole=not has_errors(found))]
     return tuple(sorted(said, key=lambda d: (d.place, d.code, d.message)))
 
 

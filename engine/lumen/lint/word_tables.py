@@ -1,6 +1,7 @@
 """The phrases, answers and lists of all behaviours and words files, with their places."""
 
 from collections.abc import Iterator, Mapping
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 from lumen.expressions.phrases import is_heard
@@ -65,7 +66,15 @@ def written_phrases(report: DocumentReport, path: NodePath) -> Iterator[WrittenP
 
 def is_taken(phrase: str, other: Mapping[str, tuple[str, ...]]) -> bool:
     """Return whether every form of a phrase contains one of the phrases in `other`; False if a form has a slot."""
-    return all(form.plain and is_heard(" ".join(form.literals), other) for form in forms(phrase))
+    texts = _plain_texts(phrase)
+    return texts is not None and all(is_heard(text, other) for text in texts)
+
+
+@lru_cache(maxsize=8192)
+def _plain_texts(phrase: str) -> tuple[str, ...] | None:
+    """Return the words of each form of a phrase; None if a form has a slot. Phrases are compared with many tables."""
+    every = forms(phrase)
+    return tuple(" ".join(form.literals) for form in every) if all(form.plain for form in every) else None
 
 
 def declaring_report(draft: ProjectDraft, behavior: str, key: str, name: str) -> DocumentReport | None:

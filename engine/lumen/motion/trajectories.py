@@ -32,10 +32,11 @@ class Polynomial(NamedTuple):
 
     def peak_speed(self) -> float:
         """Return the peak speed in the segment [rad/s]; exact for lines, cubics and minimum jerk."""
-        moments = [0.0, 0.5, 1.0]
-        if self.c3 and 0.0 < (vertex := -self.c2 / (3 * self.c3)) < 1.0:
-            moments.append(vertex)
-        return max(abs(self._slope(u)) for u in moments) / self.duration
+        _, duration, _, c1, c2, c3, c4, c5 = self
+        first, last = abs(c1), abs(c1 + (2 * c2 + (3 * c3 + (4 * c4 + 5 * c5))))
+        fastest = 0.5 if c5 else -c2 / (3 * c3) if c3 else 0.0  # minimum jerk is symmetric, a cubic has a vertex
+        inner = abs(self._slope(fastest)) if 0.0 < fastest < 1.0 else first
+        return max(first, inner, last) / duration
 
     def extremes(self) -> tuple[float, float]:
         """Return the smallest and the greatest angle [rad]: those at the ends, which these polynomials never exceed."""

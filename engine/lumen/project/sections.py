@@ -75,7 +75,7 @@ def read_sections(data: Mapping[str, Any], report: DocumentReport) -> dict[str, 
     """
     found: dict[str, object] = {}
     for feature, (key, row) in rows("sections"):
-        if not _has(data, key):
+        if not has_section(data, key):
             continue
         faults: list[Diagnostic] = []
         with faults_reported(feature, f"reading `{key}`", faults):
@@ -135,9 +135,9 @@ def _schema(where: str) -> Mapping[str, Any]:
     return schema
 
 
-def _has(data: Mapping[str, Any], key: str) -> bool:
+def has_section(data: object, key: str) -> bool:
     """Return True if the data has the section of this key, such as `modules.show`."""
-    node: Any = data
+    node = data
     for step in key.split("."):
         if not isinstance(node, Mapping) or step not in node:
             return False

@@ -16,7 +16,7 @@ FEATURE = Feature(
     ),
     failures=("lumen.features.alerts.part:tell_of_failure",),
     pages=("lumen.features.alerts.pages",),
-    rules=("lumen.features.alerts.rules:check",),
+    section_rules={"alerts": "lumen.features.alerts.rules:check"},
     subcommands={
         "alerts": Subcommand("send a test alert to every recipient", "lumen.features.alerts.command", after="doctor"),
     },

@@ -14,7 +14,7 @@ FEATURE = Feature(
         ),
     ),
     pages=("lumen.features.console.explained",),
-    rules=("lumen.features.console.rules:check",),
+    section_rules={"console": "lumen.features.console.rules:check"},
     subcommands={
         "console": Subcommand(
             "show a running exhibition in a browser, and control it from there",

@@ -15,7 +15,7 @@ FEATURE = Feature(
     ),
     before_start=("lumen.features.fleet.installing:finish",),
     pages=("lumen.features.fleet.pages",),
-    rules=("lumen.features.fleet.rules:check",),
+    section_rules={"fleet.yaml": "lumen.features.fleet.rules:check"},
     files={"fleet.yaml": "lumen.features.fleet.reading:build_fleet"},
     codes=("lumen.features.fleet.reading",),
     subcommands={

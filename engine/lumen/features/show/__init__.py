@@ -5,7 +5,7 @@ from lumen.feature import Feature, ModuleRow, Section
 FEATURE = Feature(
     name="show",
     pages=("lumen.features.show.pages",),
-    rules=("lumen.features.show.rules:check",),
+    section_rules={"modules.show": "lumen.features.show.rules:check"},
     sections={
         "modules.show": Section(
             read="lumen.features.show.reading:read_show",
