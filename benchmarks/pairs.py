@@ -71,7 +71,7 @@ def main() -> int:
     worse, checkout = 0, options.checkout.resolve()
     print(f"{'':<58}{'there':>10}{'here':>10}{'ratio':>8}  A/A", flush=True)
     with tempfile.TemporaryDirectory() as folder:
-        here = _with_project_of(checkout, Path(folder) / "here")
+        here = with_project_of(checkout, Path(folder) / "here")
         for row in ROWS:
             # `make quick` runs other tests in each checkout.
             if any(word in row.what for word in options.rows) and "make quick" not in row.what:
@@ -81,7 +81,7 @@ def main() -> int:
     return bool(worse)
 
 
-def _with_project_of(checkout: Path, folder: Path) -> Path:
+def with_project_of(checkout: Path, folder: Path) -> Path:
     """Fill a new folder with links to this checkout, and with the project's files of the other; return the folder."""
     folder.mkdir()
     project = {MAIN_FILE, *PROJECT_FOLDERS}

@@ -1,0 +1,155 @@
+"""Compare the processor instructions that this checkout and another one execute, as Valgrind's cachegrind counts them.
+
+    python benchmarks/instructions.py CHECKOUT [--rows WORD …]
+
+Times differ by a factor of two between two runs on a machine that others use too; the number of instructions differs
+by less than one percent, whatever else runs. It says nothing about caches and disks: pairs.py measures times. Both
+checkouts work on the other checkout's project, with this Python. A figure of an event is the difference between a
+short and a long run; each other figure is the median of three runs.
+"""
+
+import argparse
+import os
+import re
+import shutil
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from functools import partial
+from pathlib import Path
+from statistics import median
+from typing import NamedTuple
+
+sys.path.insert(0, str(Path(__file__).parents[1]))
+
+from lint import EDITS, SETTLED_NS, edited
+from pairs import with_project_of
+from tests.guarded import PIPE, STDOUT, run_guarded
+
+from lumen.project.project_folders import MAIN_FILE, PROJECT_FOLDERS
+
+RUNS = 3
+FEW, MANY = 1_000, 6_000
+"""The events of a short and a long run, after as many as the short one to warm up."""
+COUNTED = re.compile(r"I\s+refs:\s+([\d,]+)")
+HANG = 900
+"""The time after which a run counts as hanging [s]."""
+
+
+class Place(NamedTuple):
+    """A checkout, a copy of the project, and the folder of a cache, which lint fills."""
+
+    checkout: Path
+    project: Path
+    cache: Path
+
+
+def main() -> int:
+    """Print a line for each figure: the instructions in the other checkout and in this one, and their ratio."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("checkout", type=Path, help="the folder of the other checkout")
+    parser.add_argument("--rows", nargs="*", default=[""], metavar="WORD", help="only rows that contain one of these")
+    options = parser.parse_args()
+    if not (options.checkout / "benchmarks/statechart.py").exists():
+        parser.error(f"there is no benchmarks/statechart.py in {options.checkout}")
+    if not shutil.which("valgrind"):
+        parser.error("there is no `valgrind`: install the package of that name")
+    print(f"{'':<40}{'there':>12}{'here':>12}{'ratio':>8}", flush=True)
+    with tempfile.TemporaryDirectory() as name, ThreadPoolExecutor() as pool:
+        folder, checkout = Path(name), options.checkout.resolve()
+        here = with_project_of(checkout, folder / "here")
+        places = [_place(folder / "1", checkout, checkout), _place(folder / "2", here, checkout)]
+        time.sleep(SETTLED_NS / 1e9)  # lint does not keep the results of files that changed a moment ago
+        for what, measure in ROWS.items():
+            if any(word in what for word in options.rows):
+                theirs, ours = pool.map(measure, places)
+                print(f"{what:<40}{_shown(theirs):>12}{_shown(ours):>12}{ours / theirs:>8.3f}", flush=True)
+    return 0
+
+
+def _place(folder: Path, checkout: Path, of: Path) -> Place:
+    """Fill a new folder with a copy of the project of the checkout `of`, for a run of `checkout`."""
+    project = folder / "project"
+    project.mkdir(parents=True)
+    shutil.copy(of / MAIN_FILE, project)
+    for name in PROJECT_FOLDERS:
+        if (of / name).is_dir():
+            shutil.copytree(of / name, project / name)
+    return Place(checkout, project, folder / "cache")
+
+
+def _shown(count: float) -> str:
+    return f"{count / 1e6:,.1f} M" if count >= 1e6 else f"{count / 1e3:,.1f} k"
+
+
+def _command(place: Place) -> float:
+    return median(_count(place, "-m", "lumen", "--version") for _ in range(RUNS))
+
+
+def _lint(place: Place) -> float:
+    return median(_linted(place, kept=False) for _ in range(RUNS))
+
+
+def _same_files(place: Place) -> float:
+    _linted(place, kept=False)
+    return median(_linted(place) for _ in range(RUNS))
+
+
+def _one_changed(place: Place) -> float:
+    """Return the instructions of a lint after a change in one file; the files are then as before."""
+    name, before, value = EDITS[0]
+    file = place.project / name
+    content, counts = file.read_bytes(), []
+    _linted(place, kept=False)
+    for n in range(RUNS):
+        file.write_bytes(edited(content, before, value, n))
+        counts.append(_linted(place))
+    file.write_bytes(content)
+    return median(counts)
+
+
+def _linted(place: Place, *, kept: bool = True) -> int:
+    if not kept:
+        shutil.rmtree(place.cache, ignore_errors=True)
+    return _count(place, "-m", "lumen", "lint", str(place.project))
+
+
+def _event(make: str, place: Place) -> float:
+    """Return the instructions of one event of the work that the expression `make` returns."""
+
+    def run(count: int) -> int:
+        imports = "from visit import tour; from statechart import regions, ring, sending"
+        return _count(place, "-c", f"{imports}; work = {make}; work({FEW}); work({count})")
+
+    return (run(MANY) - run(FEW)) / (MANY - FEW)
+
+
+def _count(place: Place, *words: str) -> int:
+    """Return the instructions of a Python process. Raises RuntimeError if it fails."""
+    path = os.pathsep.join(str(place.checkout / part) for part in ("engine", "benchmarks", ""))
+    environment = {**os.environ, "PYTHONPATH": path, "PYTHONHASHSEED": "0", "XDG_CACHE_HOME": str(place.cache)}
+    environment.pop("PYTHONDONTWRITEBYTECODE", None)
+    counter = ("valgrind", "--tool=cachegrind", "--cache-sim=no", "--cachegrind-out-file=/dev/null")
+    run = run_guarded(
+        (*counter, sys.executable, *words), env=environment, stdout=PIPE, stderr=STDOUT, text=True, timeout=HANG
+    )
+    if run.returncode or not (found := COUNTED.search(run.stdout)):
+        raise RuntimeError(f"`{' '.join(words)}` in {place.checkout}: {run.stdout.strip()[-300:]}")
+    return int(found[1].replace(",", ""))
+
+
+ROWS: dict[str, Callable[[Place], float]] = {
+    "`lumen --version`": _command,
+    "`lumen lint`, nothing kept": _lint,
+    "the same files again": _same_files,
+    "one file changed": _one_changed,
+    "an event of a ring of 15 states": partial(_event, "sending(ring(15))"),
+    "an event of three levels, two regions": partial(_event, "sending(regions())"),
+    "an event of visits to the tour": partial(_event, "tour()"),
+}
+
+
+if __name__ == "__main__":
+    sys.exit(main())
