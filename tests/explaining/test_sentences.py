@@ -4,6 +4,7 @@ from typing import Any
 
 from lumen.insight.explaining.sentences import explained, first_context
 from lumen.language.events import Event
+from lumen.language.machines import hearing_states, rows_around
 from lumen.statechart import initial, step
 from lumen.statechart.direct_entry import entered_directly
 from tests.explaining.guide import guide
@@ -86,10 +87,10 @@ def test_an_entry_of_a_list_is_the_first_one() -> None:
 def test_nothing_is_taken_where_nothing_is_heard() -> None:
     assert explained(MACHINE, "bye", "dance", MACHINE.context).rows == ()
     assert explained(MACHINE, "bye", "dance", MACHINE.context).taken is None
-    assert [state.path for state in MACHINE.hearing_states] == [
+    assert [state.path for state in hearing_states(MACHINE)] == [
         "ask_name", "offer", "offer.choice", "offer.quiet", "quiz.ask",
     ]  # fmt: skip
-    assert [row.key for row in MACHINE.rows_around("offer.quiet")] == ["dance", "no|done", "else"]
+    assert [row.key for row in rows_around(MACHINE, "offer.quiet")] == ["dance", "no|done", "else"]
 
 
 @for_each(

@@ -19,7 +19,7 @@ from lumen.insight.explaining.sentences import (
     first_context,
 )
 from lumen.language.diagnostics import did_you_mean
-from lumen.language.machines import MachineDefinition
+from lumen.language.machines import MachineDefinition, hearing_states, path_of, rows_around
 from lumen.language.projects import Project
 
 HEAD = ("", "state", "row", "found", "words", "alone", "negated", "asked", "guard", "because")
@@ -77,23 +77,23 @@ def _machine(project: Project, name: str | None) -> MachineDefinition:
     if name not in project.behaviors:
         raise UsageError(f"no behaviour `{name}`: {did_you_mean(name, project.behaviors, 'behaviors/ has')}")
     machine = project.behaviors[name]
-    if not machine.hearing_states:
+    if not hearing_states(machine):
         raise UsageError(f"no state of `{name}` has `hears`: add it to one")
     return machine
 
 
 def _paths(machine: MachineDefinition, state: str | None) -> list[str]:
     """Return the path of the chosen state, or of all states that hear. Raises UsageError if the state hears nothing."""
-    hearing = machine.hearing_states
+    hearing = hearing_states(machine)
     if state is None:
         return [one.path for one in hearing]
     names = [one.name for one in hearing if one.path]
     try:
-        path = machine.path_of(state)
+        path = path_of(machine, state)
     except KeyError:
         known = [one.name for one in machine.states.values() if one.path]
         raise UsageError(f"no state `{state}`: {did_you_mean(state, known, 'there are')}") from None
-    if not machine.rows_around(path):
+    if not rows_around(machine, path):
         raise UsageError(f"neither `{state}` nor a state around it has `hears`: {did_you_mean('', names, 'choose')}")
     return [path]
 

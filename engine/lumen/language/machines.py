@@ -238,22 +238,24 @@ class MachineDefinition:
         invokes = self.states[path].invoke if path in self.states else ()
         return next((invoke.behavior for invoke in invokes if invoke.id == id), "")
 
-    def path_of(self, name: str) -> str:
-        """Return the path of the state with that id or path. Raises KeyError if no state has it."""
-        found = next((state.path for state in self.states.values() if name == state.alias), name)
-        return self.states[found].path
 
-    @property
-    def hearing_states(self) -> list[State]:
-        """The states that have rows of `hears`, in document order."""
-        return [state for state in self.states.values() if any(t.hears for t in state.transitions)]
+def path_of(machine: MachineDefinition, name: str) -> str:
+    """Return the path of the state with that id or path. Raises KeyError if no state has it."""
+    found = next((state.path for state in machine.states.values() if name == state.alias), name)
+    return machine.states[found].path
 
-    def rows_around(self, path: str) -> list[Hears]:
-        """Return the rows of `hears` of a state and of the states around it, inner states first."""
-        found: list[Hears] = []
-        at: str | None = path
-        while at is not None:
-            state = self.states[at]
-            found += [t.hears for t in state.transitions if t.hears]
-            at = state.parent
-        return found
+
+def hearing_states(machine: MachineDefinition) -> list[State]:
+    """Return the states that have rows of `hears`, in document order."""
+    return [state for state in machine.states.values() if any(t.hears for t in state.transitions)]
+
+
+def rows_around(machine: MachineDefinition, path: str) -> list[Hears]:
+    """Return the rows of `hears` of a state and of the states around it, inner states first."""
+    found: list[Hears] = []
+    at: str | None = path
+    while at is not None:
+        state = machine.states[at]
+        found += [t.hears for t in state.transitions if t.hears]
+        at = state.parent
+    return found

@@ -3,7 +3,7 @@
 from lumen.expressions.expression_findings import UNKNOWN_STATE
 from lumen.language.diagnostics import ERROR, Code, did_you_mean
 from lumen.language.folders import SAYINGS_FOLDER
-from lumen.language.machines import Hears, MachineDefinition
+from lumen.language.machines import Hears, MachineDefinition, hearing_states, path_of, rows_around
 from lumen.language.sayings import Saying
 from lumen.lint.lookups import References
 from lumen.project.document_report import DocumentReport
@@ -32,9 +32,9 @@ def _refused(report: DocumentReport, machine: MachineDefinition, saying: Saying)
     """Report the faults of a saying; return the paths of unknown states and rows, which are reported only once."""
     behavior, state, key = where = saying.behavior, saying.state, saying.row
     try:
-        rows = machine.rows_around(machine.path_of(state))
+        rows = rows_around(machine, path_of(machine, state))
     except KeyError:
-        names = [state.name for state in machine.hearing_states]
+        names = [state.name for state in hearing_states(machine)]
         message = f"`{behavior}` has no state `{state}`"
         cause = f"behaviors/{behavior}.yaml state {state}"
         report(
@@ -42,7 +42,7 @@ def _refused(report: DocumentReport, machine: MachineDefinition, saying: Saying)
         )
         return {where[:2]}
     if not rows:
-        names = [state.name for state in machine.hearing_states]
+        names = [state.name for state in hearing_states(machine)]
         hint = did_you_mean(state, names, "states with `hears`:") if names else "give it `hears`"
         message = f"neither `{state}` nor a state around it has `hears`"
         report(UNKNOWN_ROW, where[:2], message, hint, key=True)

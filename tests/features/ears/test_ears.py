@@ -19,8 +19,8 @@ from lumen.features.ears.module import Ears, Hypothesis
 from lumen.features.ears.resampling import resampled
 from lumen.features.ears.sphinx import MAX_MODELS, Sphinx, arpa, pronounced
 from lumen.features.voice.module import Espeak
-from lumen.insight.explaining.sayings import path_of
 from lumen.insight.explaining.sentences import explained, first_context
+from lumen.language.machines import path_of
 from lumen.language.projects import Project
 from lumen.run.sound import Sound, sound_of
 from tests.features.conftest import Stand

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 from lumen.insight.explaining.outlook import Running, running
 from lumen.insight.explaining.sentences import explained
 from lumen.insight.replay.replaying import ReplayedStep
-from lumen.language.machines import MachineDefinition
+from lumen.language.machines import MachineDefinition, rows_around
 from lumen.statechart import Snapshot
 from lumen.statechart.asking import unnamed
 from lumen.talk.hearing import hearing_of
@@ -58,7 +58,7 @@ def heard_sentence(behavior: str, taken: ReplayedStep, text: str) -> tuple[Heard
             sentence = explained(one.machine, path, text, one.snapshot.context, before.language)
             if sentence.taken and took in ("", ELSE):
                 took = sentence.taken.key
-            keys = dict.fromkeys(row.key for row in one.machine.rows_around(path))
+            keys = dict.fromkeys(row.key for row in rows_around(one.machine, path))
             rows[HearingState(name, one.machine.states[path].name)] = list(keys)
     said = " ".join(_without_names(text, machine, before, taken.after).split())
     if not rows or not any(sign.isalnum() for sign in said):

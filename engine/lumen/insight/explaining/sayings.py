@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 
 from lumen.insight.explaining.sentences import ExplainedRow, ExplainedSentence, explained, first_context
 from lumen.language.folders import SAYINGS_FOLDER
-from lumen.language.machines import MachineDefinition
+from lumen.language.machines import MachineDefinition, path_of
 from lumen.language.sayings import Saying, SayingSet
 from lumen.talk.folding import folded
 from lumen.talk.hearing import phrases_in
@@ -30,7 +30,7 @@ def tried(sets: Iterable[SayingSet], machines: Mapping[str, MachineDefinition]) 
     for each in sets:
         for saying in each.sayings:
             machine = machines[saying.behavior]
-            path = machine.path_of(saying.state)
+            path = path_of(machine, saying.state)
             found = explained(machine, path, saying.text, contexts[saying.behavior], saying.language)
             took = found.taken.key if found.taken else ""
             yield TriedSaying(f"{SAYINGS_FOLDER}/{each.name}.yaml", saying, took, _wrong(saying, found))
