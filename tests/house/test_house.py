@@ -3,9 +3,8 @@
 import re
 
 import pytest
-from closed_lists import ON_PURPOSE, closed_on_purpose
-from figures import beyond_ceilings, figures
-from scopes import Package
+from closed_lists import ON_PURPOSE
+from figures import Figure, beyond_ceilings, figures
 from scripts.shape import PACKAGE, ROOT, Shape, floor_order, measure, read
 from source_files import SourceFile
 
@@ -26,6 +25,12 @@ def house(files: list[SourceFile]) -> Shape:
     return measure(files, order)
 
 
+@pytest.fixture(scope="module")
+def counted(files: list[SourceFile]) -> dict[str, Figure]:
+    with gc_paused():
+        return figures(files)
+
+
 def test_a_public_class_or_alias_has_a_name_of_its_own(house: Shape) -> None:
     assert house.repeated_types == {}
 
@@ -38,14 +43,13 @@ def test_no_file_imports_what_stands_above_or_beside_its_floor(house: Shape) -> 
     assert house.arrows_up == []
 
 
-def test_the_figures_of_the_architecture_are_at_their_ceilings(files: list[SourceFile]) -> None:
+def test_the_figures_of_the_architecture_are_at_their_ceilings(counted: dict[str, Figure]) -> None:
     held = {name: ceiling for name, ceiling in ceilings().items() if name != ENTERING}
-    with gc_paused():
-        assert beyond_ceilings(figures(files), held) == []
+    assert beyond_ceilings(counted, held) == []
 
 
-def test_each_reason_for_a_closed_list_is_about_one_that_exists(files: list[SourceFile]) -> None:
-    assert len(closed_on_purpose(Package(files))) == len(ON_PURPOSE)
+def test_each_reason_for_a_closed_list_is_about_one_that_exists(counted: dict[str, Figure]) -> None:
+    assert counted["lists closed on purpose"].value == len(ON_PURPOSE)
 
 
 def test_every_thread_is_watched() -> None:
