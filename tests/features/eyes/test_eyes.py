@@ -16,8 +16,9 @@ from PIL import Image
 
 from lumen.clock.simulated import SimulatedClock
 from lumen.errors import ModuleError
-from lumen.features.eyes.detector import PersonDetector
-from lumen.features.eyes.gallery import FaceGallery
+from lumen.features.eyes import gallery
+from lumen.features.eyes.detector import Box, PersonDetector
+from lumen.features.eyes.gallery import MAX_PICTURES_PER_NAME, FaceGallery
 from lumen.features.eyes.module import Eyes
 from lumen.features.simulation.offers import SimulatedRobot
 from lumen.language.modules import module_names
@@ -224,6 +225,33 @@ def test_faces_that_are_damaged(tmp_path: Path) -> None:
     (tmp_path / "faces.npz").write_bytes(b"no faces")
     with pytest.raises(ModuleError, match="contains no faces or is damaged"):
         FaceGallery(tmp_path / "faces.npz", lambda: 0.0)
+
+
+def test_a_face_that_is_deleted_while_the_file_cannot_be_written_is_deleted_from_it_later(tmp_path: Path) -> None:
+    file, grey, face = tmp_path / "faces.npz", np.tile(np.arange(96, dtype=np.uint8), (96, 1)), Box(0, 0, 96, 96)
+    known = FaceGallery(file, lambda: 0.0)
+    known.enrol("Eileen", grey, face)
+    file.rename(tmp_path / "aside")
+    file.mkdir()
+    with pytest.raises(ModuleError, match="cannot be written"):
+        known.forget("Eileen")
+    assert known.names == []
+    file.rmdir()
+    (tmp_path / "aside").rename(file)
+    assert FaceGallery(file, lambda: 0.0).names == ["Eileen"]
+    assert known.forget("Eileen") == 0
+    assert FaceGallery(file, lambda: 0.0).names == []
+
+
+def test_a_picture_that_replaces_the_oldest_needs_no_room(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(gallery, "MAX_PICTURES", MAX_PICTURES_PER_NAME)
+    grey, face = np.tile(np.arange(96, dtype=np.uint8), (96, 1)), Box(0, 0, 96, 96)
+    known = FaceGallery(None, lambda: 0.0)
+    counts = [known.enrol("Eileen", grey, face) for _ in range(MAX_PICTURES_PER_NAME + 1)]
+    assert counts == [*range(1, MAX_PICTURES_PER_NAME + 1), MAX_PICTURES_PER_NAME]
+    with pytest.raises(ModuleError, match="the gallery is full"):
+        known.enrol("Dewi", grey, face)
+    assert known.forget("Eileen") == MAX_PICTURES_PER_NAME
 
 
 @pytest.mark.slow

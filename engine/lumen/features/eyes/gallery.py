@@ -35,6 +35,8 @@ class FaceGallery:
         self._cv2, self._file, self._clock = opencv(), file, clock
         self._faces: list[tuple[str, float, Any]] = []
         self._model: Any = None
+        self._unsaved = False
+        """True if the file could not be written: it may contain deleted pictures, and the next deletion writes it."""
         if file and file.exists():
             self._faces = list(_read(file))
             self._train()
@@ -51,12 +53,13 @@ class FaceGallery:
         """
         key = name_key(name)
         mine = [i for i, (other, _, _) in enumerate(self._faces) if name_key(other) == key]
-        if len(mine) >= MAX_PICTURES_PER_NAME:
-            del self._faces[mine[0]]
-        if len(self._faces) >= MAX_PICTURES:
+        replaced = mine[:1] if len(mine) >= MAX_PICTURES_PER_NAME else []
+        if len(self._faces) - len(replaced) >= MAX_PICTURES:
             raise ModuleError(
                 f"the gallery is full ({MAX_PICTURES} pictures of faces): forget a visitor, then learn `{name}` again"
             )
+        for oldest in replaced:
+            del self._faces[oldest]
         self._faces.append((name, self._clock(), self._cut(grey, face)))
         self._save()
         return sum(name_key(other) == key for other, _, _ in self._faces)
@@ -78,7 +81,7 @@ class FaceGallery:
 
     def _keep(self, faces: list[tuple[str, float, Any]]) -> int:
         gone = len(self._faces) - len(faces)
-        if gone:
+        if gone or self._unsaved:
             self._faces = faces
             self._save()
         return gone
@@ -105,6 +108,7 @@ class FaceGallery:
         self._train()
         if self._file is None:
             return
+        self._unsaved = True
         import numpy as np
 
         data = io.BytesIO()
@@ -117,6 +121,7 @@ class FaceGallery:
             write_private(self._file, data.getvalue())
         except OSError as error:
             raise ModuleError(f"{self._file} cannot be written: {error.strerror}") from None
+        self._unsaved = False
 
 
 def _read(file: Path) -> Iterable[tuple[str, float, Any]]:
