@@ -161,3 +161,17 @@ def test_a_module_of_rules_that_cannot_be_imported_is_one_finding(
 def test_unused_things_are_reported_after_all_other_rules(installed: Installed, project: Path) -> None:
     assert "lumen.lint.unused:check" in [rule for _, rule in rows("last_rules")]
     assert "lumen.lint.unused:check" not in [rule for _, rule in rows("rules")]
+
+
+def test_a_rule_of_a_section_or_a_file_runs_only_if_the_project_has_it(installed: Installed, project: Path) -> None:
+    rules = "section_rules={'robot.name': 'faulty_rules:other', 'aliases': 'faulty_rules:check'}"
+    installed.write("faulty", FAULTY.partition("rules=")[0] + rules + ")", faulty_rules=FAULTY_RULES)
+    (finding,) = found(project)
+    assert "later" in finding
+    main_file = project / "lumen.yaml"
+    main_file.write_text(main_file.read_text().replace("name: TINY, ", ""))
+    assert not [each for each in found(project) if "later" in each]
+    main_file.write_text(main_file.read_text() + "aliases: false\n")
+    (finding,) = [each for each in found(project) if "faulty" in each]
+    assert "its rule `faulty_rules:check` raised AttributeError" in finding
+    assert "later" in codes()
