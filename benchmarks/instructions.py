@@ -3,7 +3,7 @@
     python benchmarks/instructions.py CHECKOUT [--rows WORD …]
 
 Times differ by a factor of two between two runs on a machine that others use too; the number of instructions differs
-by less than one percent, whatever else runs. It says nothing about caches and disks: pairs.py measures times. Both
+by less than one percent, whatever else runs. It leaves out caches and disks; pairs.py measures times. Both
 checkouts work on the other checkout's project, with this Python. A figure of an event is the difference between a
 short and a long run; each other figure is the median of three runs.
 """
