@@ -9,6 +9,7 @@ import pytest
 from tests.features.console.chromium import Chromium
 from tests.features.console.conftest import Hosted
 from tests.features.console.pages import Served
+from tests.features.console.test_rest import RESTS
 from tests.waiting import HANG, until
 
 WINDOWS = 8
@@ -35,6 +36,12 @@ button.heed([{ robot: "NAO", connected: true, stopped: true }]);
 button.heed = ((heed) => (robots) => { if (!robots) heed.call(button); })(button.heed); // the robot reports nothing new
 button.show("unsent");
 """
+HELD = """
+const { fetch } = globalThis, answers = (globalThis.answers = []);
+const held = () => new Promise((answer) => answers.push((state) => answer(Response.json({ state }))));
+globalThis.fetch = (path, options) => (path === "/api/commands" ? held() : fetch(path, options));
+"""
+"""Holds the answers to commands back until `answers[n](state)`."""
 SEEN = "const seen = document.querySelector('main img'); return Boolean(seen && seen.complete && seen.naturalWidth);"
 PIXEL = f"/9j/4AAQSkZJRgABAQEASABIAAD/2wBDAP{'/' * 86}wgALCAABAAEBAREA/8QAFBABAAAAAAAAAAAAAAAAAAAAAP/aAAgBAQABPxA="
 """A JPEG of one pixel."""
@@ -148,6 +155,25 @@ def test_an_alarm_is_corrected_though_the_robot_reports_nothing_new(
     until(lambda: "Rests" in chromium.said(), HANG)
     chromium.run(ALARMED)
     until(lambda: "Rests after all" in chromium.said(), HANG)
+
+
+@pytest.mark.slow
+def test_the_answer_to_an_earlier_press_is_not_the_last_ones(
+    served: Served, hosted: Hosted, chromium: Chromium
+) -> None:
+    """Somebody may let the robot move between two presses, and the console may answer the first one late."""
+    chromium.open(served.console.address)
+    chromium.find("rest-button[main] button.rest")
+    chromium.run(HELD)
+    chromium.rest()
+    chromium.rest()
+    until(lambda: chromium.run("return answers.length") == 2, HANG)
+    chromium.driver.execute_async_script(
+        "const done = arguments[0]; answers[0]('finished'); setTimeout(done, 0); // after all that the answer causes"
+    )
+    assert not RESTS.search(chromium.said())
+    chromium.run("answers[1]('finished')")
+    until(lambda: RESTS.search(chromium.said()), HANG)
 
 
 def _commands(served: Served) -> list[dict[str, str]]:

@@ -208,7 +208,8 @@
           setTimeout(() => this.forget(sent), SEEN);
         }
         if (remembered()?.id === sent.id) remember(sent);
-        if (press === this.presses || (state === "finished" && !again)) this.show(state, answer);
+        // The robot may have been let go between an earlier press and the last one: only the last one says that it rests.
+        if (press === this.presses) this.show(state, answer);
       });
     }
 
