@@ -131,6 +131,23 @@ def test_over_the_bus_it_is_stopped_asked_and_let_go_on() -> None:
     stand.server.close()
 
 
+@for_each("stop", ["rest", "stop"])
+def test_a_resume_does_not_undo_a_stop_that_came_right_after_it(stop: str) -> None:
+    stand, answers = Stand(), Collector()
+    ask(stand, "avatar.NAO.stop", "rest", by="Ada")
+    stand.bus.subscribe("answers", answers)
+    for method, by in [("resume", "Bo"), (stop, "Cy")]:  # both before the robot's next tick
+        body = {"type": "motion", "method": method, "parameter": {"by": by}}
+        stand.bus.publish("avatar.NAO.stop", body, reply_to="answers")
+    stand.live(0.04)
+    assert "command failed: the robot was stopped again at that moment" in answers.bodies
+    assert ask(stand, "avatar.NAO.stop", "stopped")["stopped_by"] == "Ada"
+    assert Wake() not in [command for _, command in stand.robot.started]
+    assert ask(stand, "avatar.NAO.stop", "resume", by="Bo") == "command finished"
+    assert ask(stand, "avatar.NAO.stop", "stopped")["stopped_by"] == ""
+    stand.server.close()
+
+
 def test_a_modules_rest_is_nobodys_stop() -> None:
     stand = Stand()
     ask(stand, "avatar.NAO.command", "rest")

@@ -50,6 +50,7 @@ MAX_SPEECH = 60.0
 """The longest estimated duration of a text [s]."""
 ENDED = "the robot accepts no more commands"
 ID_TAKEN = "its sender has used that id for another command: give each command its own id"
+STOPPED_AGAIN = "the robot was stopped again at that moment"
 RESTARTED = "the robot has restarted since it began that command"
 
 OWN = "b"
@@ -268,6 +269,9 @@ class CommandReceiver:
         message = arrival.message
         record = CommandRecord(message, own_id(message.body), method_of(message.body), body=message.body)
         stopping = stops(message.body)
+        if overtaken and record.method == "resume":
+            self._refuse(message, STOPPED_AGAIN)
+            return
         if record.method in CommandQueries.METHODS:
             self._queries.answer(message)
             return
