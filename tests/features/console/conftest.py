@@ -142,7 +142,7 @@ def browser(served: Served) -> Browser:
 @pytest.fixture
 def house(copy: Path) -> Iterator[House]:
     """An exhibition on its own bus, and a console, in processes that a test may kill."""
-    yield from lived_in(House(copy, speed="4"))
+    yield from lived_in(House(copy))
 
 
 @pytest.fixture
@@ -171,13 +171,13 @@ def own_broker(begun_broker: RabbitMQ) -> RabbitMQ:
 @pytest.fixture
 def house_on_a_broker(copy: Path, broker: RabbitMQ) -> Iterator[House]:
     """As `house`, but in more processes, on the broker of the run."""
-    yield from lived_in(House(copy, broker, speed="4"))
+    yield from lived_in(House(copy, broker))
 
 
 @pytest.fixture
 def house_on_its_broker(copy: Path, own_broker: RabbitMQ) -> Iterator[House]:
     """As `house_on_a_broker`, but on a broker that a test may kill."""
-    yield from lived_in(House(copy, own_broker, speed="4"))
+    yield from lived_in(House(copy, own_broker))
 
 
 def lived_in(house: House) -> Iterator[House]:
