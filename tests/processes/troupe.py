@@ -20,6 +20,7 @@ from lumen.ports import Clock
 from lumen.project.home import home_of
 from lumen.robot.recording import RecordingRobot
 from lumen.run.compose import compose
+from lumen.run.loop import TICK_PERIOD
 from lumen.run.making.modules import ModulesPlan
 from lumen.run.parts.remote_brain import RemoteBrainPart
 from lumen.run.plan import Plan
@@ -70,15 +71,17 @@ steps:
 
 PAUSE_ROUNDS = 200
 """The number of ticks of each member after which `insist` sends its message again."""
-LONGEST_ROUND = 0.25
-"""The most [s] that passes for the clocks of the members while each of them ticks once."""
 
 
 class RoundTime:
-    """The outside time without the delays of a slow machine, so that they do not silence a visitor."""
+    """The outside time without the delays of a slow machine, on which a robot's clock falls behind the others.
+
+    While each member ticks once, no more of it passes than a tick lasts at that speed, because the robot's clock
+    advances by one tick.
+    """
 
     def __init__(self) -> None:
-        self._last, self._now, self._left = time.monotonic(), 0.0, LONGEST_ROUND
+        self._last, self._now, self._left = time.monotonic(), 0.0, 0.0
         self._asking = threading.Lock()
 
     def __call__(self) -> float:
@@ -88,9 +91,9 @@ class RoundTime:
             self._last, self._now, self._left = outside, self._now + passed, self._left - passed
             return self._now
 
-    def begin_round(self) -> None:
+    def begin_round(self, speed: float) -> None:
         self()
-        self._left = LONGEST_ROUND
+        self._left = TICK_PERIOD / speed
 
 
 class RoundClock(RealClock):
@@ -187,7 +190,7 @@ class Troupe:
         until(holds, meanwhile=self._tick, what=source_of(condition))
 
     def _tick(self) -> None:
-        self._time.begin_round()
+        self._time.begin_round(float(self.speed))
         for member in self.members:
             member.process.tick()
 
