@@ -9,7 +9,8 @@ from lumen.statechart import Step
 
 def innermost(machine: MachineDefinition, names: Iterable[str]) -> list[str]:
     """Return those of the named states that are not the parent of another named state."""
-    listed = list(names)
+    if not (listed := list(names)):
+        return []
     states = {state.name: state for state in machine.states.values()}
     parents = {states[name].parent for name in listed if name in states}
     return [name for name in listed if name not in states or states[name].path not in parents]

@@ -45,10 +45,17 @@ class StoryObservations:
     """The skills under way, by id."""
     asked: str = ""
     """The id of the question that was not answered yet; empty for none."""
+    _compared: tuple[object, ...] = ()
+    """What `unmet` compared last; a story asks twice a tick, and most ticks change nothing."""
+    _lacking: tuple[UnmetExpectation, ...] = ()
 
     def unmet(self, expected: Expect) -> tuple[UnmetExpectation, ...]:
         """Return everything in `expected` that is not met now."""
-        return tuple(self._unmet(expected))
+        observed = len(self.said), len(self.played), len(self.did), len(self.published)
+        compared = (expected, self.states, self.context, self.place, *observed)
+        if compared != self._compared:
+            self._compared, self._lacking = compared, tuple(self._unmet(expected))
+        return self._lacking
 
     def _unmet(self, expected: Expect) -> Iterator[UnmetExpectation]:
         if missing := [s for s in expected.states if s not in self.states]:
@@ -96,6 +103,7 @@ class StoryObservations:
     def forget(self) -> None:
         """Delete the texts, motions, skills and messages observed so far."""
         self.said, self.played, self.did, self.published = [], [], [], []
+        self._compared = ()
 
 
 def expects_fall(story: Story, machine: MachineDefinition) -> bool:
