@@ -29,8 +29,8 @@ class House:
     one process. A browser reaches the console at `address`, over `network`. Both can be cut.
     """
 
-    def __init__(self, folder: Path, broker: RabbitMQ | None = None, *, speed: str = "1", pins: str = "") -> None:
-        self.folder, self.broker, self._speed, self._pins = folder, broker, speed, pins
+    def __init__(self, folder: Path, broker: RabbitMQ | None = None) -> None:
+        self.folder, self.broker = folder, broker
         self.wire = Relay(broker.port) if broker else None
         (self.port,) = _free_ports(1)
         self.network = Relay(self.port)
@@ -59,7 +59,7 @@ class House:
             bus = ["--bus", self.broker.url] if self.broker else []
             part = {ROBOT: ["--only", ROBOT, "--robot", "recording"], REST_OF_IT: ["--robot", "remote"]}
             whole = ["--robot", "recording"]
-            line = [*lumen, "run", self.folder, *part.get(name, whole), "--speed", self._speed, *bus]
+            line = [*lumen, "run", self.folder, *part.get(name, whole), "--speed", "1", *bus]
         with self.told.open("ab") as file:
             self.processes[name] = Guarded(line, stdin=DEVNULL, stdout=file, stderr=STDOUT)
 
@@ -105,6 +105,12 @@ class House:
     def ask_brain(self, question: Mapping[str, Any]) -> Any:
         """Ask the exhibition as an operator, and return its answer; None if none comes."""
         return self._answer(lambda reached: operator_key(reached.robot), question)
+
+    def insist_on(self, question: Mapping[str, Any]) -> dict[str, Any]:
+        """Ask the exhibition again until it answers, and return its answer."""
+        answers: list[Any] = []
+        until(lambda: answers.append(self.ask_brain(question)) or answers[-1] is not None, HANG)
+        return dict(answers[-1])
 
     def send(self, key: str, body: Any) -> None:
         """Send a message as another module would; one that can't be sent now is lost."""

@@ -82,7 +82,7 @@ class Window:
 
 @pytest.fixture(scope="module")
 def begun_house(tmp_path_factory: pytest.TempPathFactory) -> Iterator[House]:
-    yield from lived_in(House(copied(tmp_path_factory.mktemp("house")), speed="4"))
+    yield from lived_in(House(copied(tmp_path_factory.mktemp("house"))))
 
 
 @pytest.fixture
@@ -96,8 +96,7 @@ def journaled(house: House, first: int, last: int) -> list[int]:
     """Return the positions in the journal from `first` to `last`, both included."""
     found: list[int] = []
     while not found or found[-1] < last:
-        page = house.ask_brain({"ask": "journal", "from": found[-1] + 1 if found else first})
-        assert isinstance(page, dict)
+        page = house.insist_on({"ask": "journal", "from": found[-1] + 1 if found else first})
         assert page["entries"], f"the journal ends at {found[-1:]}, the page had {last}"
         found += [entry["position"] for entry in page["entries"]]
     return [position for position in found if position <= last]

@@ -82,7 +82,7 @@ def size(house: House) -> tuple[float, int, int]:
 
 def lived(house: House, events: int, tabs: int, looks: int) -> None:
     """Play `events` with `tabs` tabs and `looks` pages in Chromium, print the console's sizes and check its growth."""
-    draw, begin = Random(18), house.ask_brain({"ask": "now"})["position"]
+    draw, begin = Random(18), house.insist_on({"ask": "now"})["position"]
     chromium, crowd, opened = Chromium(), Crowd(house, events), list[Stream]()
     sizes, seen, tab = list[tuple[float, int, int]](), 0, 0
     try:

@@ -35,6 +35,13 @@ const select = document.querySelector(".fork select.instead");
 select.value = arguments[0];
 select.dispatchEvent(new Event("change", { bubbles: true }));
 """
+HELD = """
+const button = document.querySelector(".declared"), key = { key: "Enter", bubbles: true };
+button.dispatchEvent(new KeyboardEvent("keydown", key));
+for (const began = performance.now(); performance.now() - began < arguments[0]; );
+button.dispatchEvent(new KeyboardEvent("keyup", key));
+"""
+"""Holds a button for so long [ms] on a page that can do nothing meanwhile."""
 TOUCH = 44
 """Smallest width and height of a control for fingers [px]."""
 
@@ -235,6 +242,16 @@ def test_a_button_that_is_held_does_it_and_one_that_is_only_pressed_does_not(vie
     viewer.shows("End the visit: done", ".told")
     viewer.shows("goodbye", ".leaf")
     assert viewer.complaints() == []
+
+
+def test_a_button_that_was_held_long_enough_does_it_on_a_busy_page_too(viewer: Viewer, served: Served) -> None:
+    viewer.open(served.console.address, ready=".leaf")
+    until(lambda: served.browser.command("event", event="face", data={"x": 160, "y": 120}).data["state"] == "finished")
+    viewer.shows("End the visit", ".declared")
+    viewer.run(HELD, 900)
+    assert "End the visit" not in viewer.text(".told")
+    viewer.run(HELD, 1100)
+    viewer.shows("End the visit: done", ".told")
 
 
 def test_a_fork_shows_what_would_have_been_beside_what_was(viewer: Viewer, served: Served, hosted: Hosted) -> None:

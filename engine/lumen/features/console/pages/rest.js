@@ -208,7 +208,7 @@
           setTimeout(() => this.forget(sent), SEEN);
         }
         if (remembered()?.id === sent.id) remember(sent);
-        // The robot may have been let go between an earlier press and the last one: only the last one says that it rests.
+        // Somebody may have let the robot move since an earlier press: only the last one tells whether it rests.
         if (press === this.presses) this.show(state, answer);
       });
     }

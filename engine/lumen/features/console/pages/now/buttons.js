@@ -22,7 +22,8 @@ function Button({ robot, button: declared }) {
   const button = usable(robot, declared);
   const [held, hold] = useState(false),
     [asking, ask] = useState(false),
-    timer = useRef(0);
+    timer = useRef(0),
+    since = useRef(0); // its timeStamp [ms]: a busy page hears both events late
   const label = inLanguage(button.label);
   const press = () => command(robot.robot, "event", { event: button.event, data: button.data ?? null }, label);
   const begin = (/** @type {KeyboardEvent | PointerEvent} */ event) => {
@@ -34,7 +35,11 @@ function Button({ robot, button: declared }) {
       // It is held, wherever it moves.
       /** @type {HTMLElement} */ (event.currentTarget).setPointerCapture(event.pointerId);
     }
+    wait(event);
+  };
+  const wait = (/** @type {Event} */ event) => {
     hold(true);
+    since.current = event.timeStamp;
     timer.current = setTimeout(() => {
       end();
       press();
@@ -44,6 +49,11 @@ function Button({ robot, button: declared }) {
     clearTimeout(timer.current);
     timer.current = 0;
     hold(false);
+  };
+  const release = (/** @type {Event} */ event) => {
+    const full = timer.current && event.timeStamp - since.current >= HELD;
+    end();
+    if (full) press();
   };
   const click = () => {
     if (!button.enabled || button.confirm === "hold") return;
@@ -58,16 +68,11 @@ function Button({ robot, button: declared }) {
       if (/** @type {Element} */ (event.target).closest("input, textarea, select, dialog")) return;
       event.preventDefault();
       if (!button.enabled) return;
-      if (button.confirm === "hold") {
-        hold(true);
-        timer.current ||= setTimeout(() => {
-          end();
-          press();
-        }, HELD);
-      } else click();
+      if (button.confirm !== "hold") click();
+      else if (!timer.current) wait(event);
     };
     const released = (/** @type {KeyboardEvent} */ event) => {
-      if (event.key === button.key) end();
+      if (event.key === button.key) release(event);
     };
     addEventListener("keydown", pressed);
     addEventListener("keyup", released);
@@ -84,8 +89,8 @@ function Button({ robot, button: declared }) {
   return html`<li><button type="button" class="declared ${held ? "held" : ""}"
     aria-disabled=${button.enabled ? null : "true"}
       aria-description=${describing} aria-keyshortcuts=${button.key || null} onClick=${click}
-      onPointerDown=${begin} onPointerUp=${end} onPointerLeave=${end} onPointerCancel=${end} onKeyDown=${begin}
-        onKeyUp=${end} onBlur=${end}
+      onPointerDown=${begin} onPointerUp=${release} onPointerLeave=${end} onPointerCancel=${end} onKeyDown=${begin}
+        onKeyUp=${release} onBlur=${end}
       onContextMenu=${(/** @type {Event} */ event) => event.preventDefault()}>
       <span>${label}</span>${button.key && html`<kbd aria-hidden="true">${button.key}</kbd>`}
       ${
