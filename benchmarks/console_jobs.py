@@ -230,7 +230,7 @@ def resume(person: Person, desk: Desk) -> None:
 def say(person: Person, desk: Desk) -> None:
     person.click(".say input")
     person.type("Welcome!", Keys.ENTER)
-    person.sees("Welcome!", ".talk .bubble.robot")
+    person.sees("Welcome!", ".lines-of-talk")
 
 
 def button(person: Person, desk: Desk) -> None:

@@ -79,7 +79,7 @@ def test_an_operator_keeps_a_sentence_and_says_it_with_one_press(viewer: Viewer,
         viewer.open(served.console.address, "robot/NAO", ready=".prepared li", mode="operator")  # another visit
         assert violations(viewer) == []
         viewer.click(".prepared-say")
-        viewer.shows("Please come closer.", ".bubble.robot")
+        viewer.shows("Please come closer.", ".lines-of-talk")
         viewer.shows("Say “Please come closer.”: done", ".told")
         viewer.run("document.querySelector('.prepared li .plain').focus()")
         viewer.type(Keys.ENTER)
