@@ -46,7 +46,7 @@ class StoryObservations:
     asked: str = ""
     """The id of the question that was not answered yet; empty for none."""
     _compared: tuple[object, ...] = ()
-    """What `unmet` compared last; a story asks twice a tick, and most ticks change nothing."""
+    """The values that `unmet` compared last: a story asks twice a tick, and most ticks change nothing."""
     _lacking: tuple[UnmetExpectation, ...] = ()
 
     def unmet(self, expected: Expect) -> tuple[UnmetExpectation, ...]:

@@ -161,7 +161,7 @@ def test_an_alarm_is_corrected_though_the_robot_reports_nothing_new(
 def test_the_answer_to_an_earlier_press_is_not_the_last_ones(
     served: Served, hosted: Hosted, chromium: Chromium
 ) -> None:
-    """Somebody may let the robot move between two presses, and the console may answer the first one late."""
+    """The robot may be resumed between two presses, and the console may answer the first one late."""
     chromium.open(served.console.address)
     chromium.find("rest-button[main] button.rest")
     chromium.run(HELD)

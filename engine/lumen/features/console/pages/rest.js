@@ -208,7 +208,7 @@
           setTimeout(() => this.forget(sent), SEEN);
         }
         if (remembered()?.id === sent.id) remember(sent);
-        // Somebody may have let the robot move since an earlier press: only the last one tells whether it rests.
+        // The robot may have been resumed since an earlier press: only the last one tells whether it rests.
         if (press === this.presses) this.show(state, answer);
       });
     }
