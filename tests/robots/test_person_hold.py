@@ -9,7 +9,7 @@ import lumen
 from lumen.language.commands import Leds, Look, Posture, Rest, Say, Wake, Walk
 from lumen.language.events import Event
 from lumen.ports import Aim, RobotCommand
-from lumen.robot.command_receiver import CommandListener
+from lumen.robot.command_receiver import STOPPED_AGAIN, CommandListener
 from lumen.robot.person_hold import HoldListener, PersonHold
 from lumen.run.parts.kept_hold import KeptHold, forget_hold
 from tests.server.stand import Stand
@@ -140,7 +140,7 @@ def test_a_resume_does_not_undo_a_stop_that_came_right_after_it(stop: str) -> No
         body = {"type": "motion", "method": method, "parameter": {"by": by}}
         stand.bus.publish("avatar.NAO.stop", body, reply_to="answers")
     stand.live(0.04)
-    assert "command failed: the robot was stopped again at that moment" in answers.bodies
+    assert f"command failed: {STOPPED_AGAIN}" in answers.bodies
     assert ask(stand, "avatar.NAO.stop", "stopped")["stopped_by"] == "Ada"
     assert Wake() not in [command for _, command in stand.robot.started]
     assert ask(stand, "avatar.NAO.stop", "resume", by="Bo") == "command finished"

@@ -50,7 +50,7 @@ MAX_SPEECH = 60.0
 """The longest estimated duration of a text [s]."""
 ENDED = "the robot accepts no more commands"
 ID_TAKEN = "its sender has used that id for another command: give each command its own id"
-STOPPED_AGAIN = "the robot was stopped again at that moment"
+STOPPED_AGAIN = "the robot was stopped again right after that: resume it again if it may move"
 RESTARTED = "the robot has restarted since it began that command"
 
 OWN = "b"

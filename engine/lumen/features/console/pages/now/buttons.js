@@ -23,7 +23,7 @@ function Button({ robot, button: declared }) {
   const [held, hold] = useState(false),
     [asking, ask] = useState(false),
     timer = useRef(0),
-    since = useRef(0); // its timeStamp [ms]: a busy page hears both events late
+    since = useRef(0); // the timeStamp of the press [ms]; a busy page hears press and release late
   const label = inLanguage(button.label);
   const press = () => command(robot.robot, "event", { event: button.event, data: button.data ?? null }, label);
   const begin = (/** @type {KeyboardEvent | PointerEvent} */ event) => {
