@@ -8,13 +8,14 @@ import os
 import threading
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from queue import SimpleQueue
 
 import pytest
 
 from lumen.project.files import Unreadable, fingerprint, read_files
 from lumen.project.project_folders import FOLDERS, ProjectFolder
 from lumen.run.watcher import FileWatcher, SavedFiles, WatchedFiles, watched_folders
-from tests.waiting import until
+from tests.waiting import HANG, until
 
 QUIET = 0.1
 TOUR, DANCE = "behaviors/tour.yaml", "motions/dance.yaml"
@@ -282,6 +283,41 @@ def test_what_takes_long_is_begun_while_the_files_settle(tmp_path: Path, clock: 
     watcher.close()
     assert not any(thread.is_alive() for thread in watcher._threads)
     assert order == ["noticed", "judged"]
+
+
+def test_only_a_change_or_a_request_ends_a_check_at_leisure(tmp_path: Path, clock: Clock) -> None:
+    root, ask, answers = fill(tmp_path / "show"), SimpleQueue[bool](), SimpleQueue[bool]()
+
+    def leisure(saved: SavedFiles, urgent: Callable[[], bool]) -> None:
+        while ask.get():
+            answers.put(urgent())
+
+    watcher = FileWatcher(root, read_files(root), lambda saved: saved, quiet=QUIET, leisure=leisure)
+
+    def urgent() -> bool:
+        ask.put(True)
+        return answers.get(timeout=HANG)
+
+    def save(path: str) -> None:
+        (root / path).write_text("new", "utf-8")
+        until(lambda: not watcher.results.empty(), meanwhile=lambda: passing(clock), what="a verdict")
+        watcher.results.get()
+
+    watcher.start()
+    save(TOUR)
+    watcher._hint.set()  # as each second
+    assert not urgent()
+    (root / DANCE).write_text("newer", "utf-8")
+    watcher._hint.set()
+    assert [urgent(), urgent()] == [True, True]
+    ask.put(False)
+    save(DANCE)
+    assert not urgent()
+    watcher.request("please")
+    assert urgent()
+    for _ in range(2):  # this check, and that of the request
+        ask.put(False)
+    watcher.close()
 
 
 END = "\nits last line\n"

@@ -189,7 +189,16 @@ class FileWatcher(Generic[T]):
         return None
 
     def _urgent(self) -> bool:
+        """Return whether a request waits, or the files have changed: most hints come without a change."""
+        if not self._hint.is_set():
+            return False
+        self._hint.clear()
+        if self._stop.is_set() or not self._asked.empty() or (self._watching and self._changed()):
+            self._hint.set()
         return self._hint.is_set()
+
+    def _changed(self) -> bool:
+        return fingerprint(self._read()) != self._hash
 
     def _settled(self, saved: SavedFiles) -> tuple[T | None, SavedFiles]:
         """Return the files once they have not changed for long enough, and the result if they were checked already."""
