@@ -280,6 +280,8 @@ def main() -> int:
     parser.add_argument("--rows", default="", help="only those whose words contain this")
     parser.add_argument("--markdown", action="store_true", help="as a table of Markdown")
     options = parser.parse_args()
+    if not any(options.rows in row.what for row in ROWS):
+        parser.error(f"no row contains {options.rows!r}; the rows are:\n" + "\n".join(row.what for row in ROWS))
     load = ", ".join(f"{load:.1f}" for load in os.getloadavg())
     print(f"{processor()}, {os.cpu_count()} cores, Python {platform.python_version()}; load before {load}\n")
     form = "| {} | {} | {} |" if options.markdown else "{:<62}{:<16}{}"

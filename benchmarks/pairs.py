@@ -68,6 +68,9 @@ def main() -> int:
         parser.error("--pairs must be at least 3: the spread needs two successive ratios")
     if not (options.checkout / "benchmarks/all.py").exists():
         parser.error(f"there is no benchmarks/all.py in {options.checkout}")
+    for word in options.rows:
+        if not any(word in row.what for row in ROWS):
+            parser.error(f"no row contains {word!r}; the rows are:\n" + "\n".join(row.what for row in ROWS))
     worse, checkout = 0, options.checkout.resolve()
     print(f"{'':<58}{'there':>10}{'here':>10}{'ratio':>8}  A/A", flush=True)
     with tempfile.TemporaryDirectory() as folder:

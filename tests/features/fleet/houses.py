@@ -60,6 +60,7 @@ class Taker:
         self.offered: list[tuple[dict[str, bytes], Callable[[Any], None]]] = []
         self.tried: list[tuple[dict[str, bytes], Callable[[Any], None]]] = []
         self.installed: list[str] = []
+        self.unwritten = ""
 
     def files(self, hash: str) -> Mapping[str, bytes] | None:
         return self.known.get(hash)

@@ -12,7 +12,7 @@ import pytest
 from lumen.errors import UsageError
 from lumen.features.fleet.bundle import messages_of, packed
 from lumen.features.fleet.bundle_trial import at_home
-from lumen.features.fleet.installing import BundleFolder, all_have, finish
+from lumen.features.fleet.installing import BundleFolder, all_have, finish, install
 from lumen.features.fleet.memory import AgentMemory, keep, remember
 from lumen.features.fleet.rollouts.presence import presence_from
 from lumen.features.fleet.signing import BUNDLE, ORDER, Signer, generate, verified
@@ -317,6 +317,39 @@ def test_files_of_several_robots_are_written_when_all_have_them(tmp_path: Path, 
     assert remember(homes["nao1"], "nao1").writing == ""
     for home in homes.values():
         home.release()
+
+
+def test_files_that_the_disk_refuses_change_nothing_and_are_tried_again(tmp_path: Path, signer: Signer) -> None:
+    root = project(tmp_path / "house", signer.public)
+    files = changed(root) | {"motions/a_new_one.yaml": b"duration: 1\n"}
+    home, memory = Home(home_of(root)), AgentMemory(writing=fingerprint(files))
+    home.hold()
+    keep(home, "nao1", memory)
+    BundleFolder(home_of(root) / "fleet").keep(files)
+    before, obstacle = read_files(root), root / "behaviors/.hello.yaml.restored"
+    obstacle.mkdir()
+    assert install(root, files) == "hello.yaml can't be written: is a directory"
+    finish(root)
+    assert read_files(root) == before
+    assert not list(root.rglob(".a_new_one*"))
+    assert remember(home, "nao1").writing == fingerprint(files)
+    obstacle.rmdir()
+    finish(root)
+    assert read_files(root) == files
+    assert remember(home, "nao1").writing == ""
+    home.release()
+
+
+def test_a_folder_that_cannot_be_written_is_told_once_until_it_has_the_files(house: House) -> None:
+    house.send(changed(house.root))
+    house.taker.take(house.agent)
+    house.taker.unwritten = "hello.yaml can't be written: no space left on device"
+    said = [house.agent.presence(10.0, {}).trouble for _ in range(3)]
+    assert said == 3 * [house.taker.unwritten]
+    assert sum("no space left" in line for line in house.told) == 1
+    assert house.incidents == [("folder", house.taker.unwritten)]
+    house.taker.unwritten = ""
+    assert house.agent.presence(10.0, {}).trouble == ""
 
 
 def test_counts_begin_anew_with_other_files_and_those_before_are_kept(house: House) -> None:

@@ -12,7 +12,7 @@ from typing import Any, Protocol
 from lumen.errors import UsageError
 from lumen.features.fleet.bundle import BadBundleError, BundleParts
 from lumen.features.fleet.bundle_trial import BundleTrial, FileTrier, as_started, fitted, refusal
-from lumen.features.fleet.installing import BundleFolder
+from lumen.features.fleet.installing import FOLDER, BundleFolder
 from lumen.features.fleet.memory import AgentMemory
 from lumen.features.fleet.rollouts.orders import NOT, desired_from, heed
 from lumen.features.fleet.rollouts.presence import (
@@ -41,6 +41,10 @@ class FileTaker(FileTrier, Protocol):
     @property
     def on_probation(self) -> bool:
         """Whether the running files are still on probation."""
+
+    @property
+    def unwritten(self) -> str:
+        """Why the last `install` left the folder unchanged; empty if it did not."""
 
     def offer(self, files: Mapping[str, bytes], answer: Callable[[Any], None]) -> None:
         """Apply files between two visits; `answer` receives each verdict."""
@@ -76,7 +80,7 @@ class FleetAgent:
         self._house, self._robot, self._key = house, robot, key
         self._taker, self.memory, self._folder = taker, memory, folder
         self._save, self._tell, self._incident = save, tell, incident
-        self.state, self.trouble, self.wants = PROVED, "", ""
+        self.state, self.trouble, self.wants, self.unwritten = PROVED, "", "", ""
         self._told: set[str] = set()
         self._offered = self._goal = ""
         self._asked = memory.order
@@ -169,10 +173,10 @@ class FleetAgent:
         for name, count in {HOURS: seconds / 3600.0, **counted}.items():
             memory.now[name] = memory.now.get(name, 0.0) + count
         self._save(memory)
-        self._install()
         at = memory.followed
         name = f"{self._house}/{self._robot}"
-        trouble = (self.trouble or next(iter(self._told), ""))[:MAX_TEXT]
+        self._install()
+        trouble = (self.trouble or self.unwritten or next(iter(self._told), ""))[:MAX_TEXT]
         about = self._goal or self.running
         return RobotPresence(
             name, self.running, self.state, about, trouble, self.wants or self.trial.wants,
@@ -243,10 +247,17 @@ class FleetAgent:
         self._tell(f"bundle {self._goal[:12]} is proved")
 
     def _install(self) -> None:
-        """Write proved files into the project's folder if that is still pending."""
-        writing = self.memory.writing
-        if writing and (files := self._taker.files(writing)) is not None and not self._folder.keep(files):
-            self._taker.install(files)
+        """Write proved files into the project's folder if that is still pending, and report each new error."""
+        writing, why = self.memory.writing, self._taker.unwritten
+        if writing and (files := self._taker.files(writing)) is not None:
+            if error := self._folder.keep(files):
+                why = f"{FOLDER} can't be written: {error}"
+            else:
+                self._taker.install(files)
+        if why not in ("", self.unwritten):
+            self._tell(f"{why}; until then the project's folder has the files from before")
+            self._incident("folder", why[:MAX_TEXT])
+        self.unwritten = why
 
     def _fail(self, state: str, why: str, goal: str = "") -> None:
         """Give up on a bundle until the next order."""

@@ -1,15 +1,15 @@
 """Installs a proved bundle's files in the project's folder, and completes the installation after a crash."""
 
-import os
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
 from pathlib import Path
 
 from lumen.features.fleet.bundle import HASH, BadBundleError, packed, unpacked
 from lumen.features.fleet.memory import AgentMemory, keep, memory_file, remember
-from lumen.project.files import belongs, fingerprint, on_disk, read_files
+from lumen.project.files import belongs, fingerprint, read_files
 from lumen.project.home import Home, home_of
 from lumen.project.project_folders import FLEET_FILE
+from lumen.run.reload.restoring import replace_files, unwritten
 from lumen.upkeep.own_folders import private_folder, write_private
 from lumen.upkeep.regular_files import read_regular
 
@@ -68,19 +68,18 @@ def bundle_folder(root: Path) -> BundleFolder:
     return BundleFolder(home_of(root) / FOLDER)
 
 
-def install(root: Path, files: Mapping[str, bytes]) -> Mapping[str, bytes]:
-    """Replace the project's files with these, and delete all others; return the resulting files.
+def install(root: Path, files: Mapping[str, bytes]) -> str:
+    """Replace the project's files with these, and delete all others, or change none; return the error, if any.
 
-    Links, fleet.yaml, and files that can't be written or deleted stay unchanged.
+    fleet.yaml stays. A link is replaced by a file.
     """
     there, wanted = _own(read_files(root)), _own(files)
-    for path, content in wanted.items():
-        if there.get(path) != content:
-            _write(on_disk(root, path), content)
-    for path in {*there} - {*wanted}:
-        with suppress(OSError):
-            on_disk(root, path).unlink()
-    return read_files(root)
+    changed = {path for path in {*there, *wanted} if there.get(path) != wanted.get(path)}
+    try:
+        replace_files(root, {path: wanted.get(path) for path in sorted(changed)}, there)
+    except OSError as error:
+        return unwritten(error)
+    return ""
 
 
 def all_have(root: Path, hash: str, robots: Iterable[str]) -> bool:
@@ -90,7 +89,7 @@ def all_have(root: Path, hash: str, robots: Iterable[str]) -> bool:
 
 
 def finish(root: Path) -> None:
-    """Complete the installations that the end of a process interrupted.
+    """Complete the installations that the end of a process interrupted, or that the disk refused.
 
     Skip an installation while another robot that shares the folder neither runs nor installs the same files.
     """
@@ -99,9 +98,9 @@ def finish(root: Path) -> None:
         hash = memory.writing
         if not hash or any(other.writing != hash and other.counted != hash for _, _, other in found):
             continue
-        if (files := bundle_folder(root).files(hash)) is not None:
-            install(root, files)
-        written(home, robot, memory)
+        files = bundle_folder(root).files(hash)
+        if files is None or not install(root, files):
+            written(home, robot, memory)
 
 
 def written(home: Home, robot: str, memory: AgentMemory) -> None:
@@ -120,15 +119,3 @@ def _memories(root: Path) -> Iterator[tuple[Home, str, AgentMemory]]:
 def _own(files: Mapping[str, bytes]) -> dict[str, bytes]:
     """Return the files that a bundle can change: all project files except fleet.yaml."""
     return {path: content for path, content in files.items() if path != FLEET_FILE and belongs(path)}
-
-
-def _write(path: Path, content: bytes) -> None:
-    """Write a file atomically. Errors are ignored, because the next reading of the files shows them."""
-    draft = path.with_name(f".{path.name}.new")
-    with suppress(OSError):
-        path.parent.mkdir(parents=True, exist_ok=True)
-        with open(draft, "wb") as opened:
-            opened.write(content)
-            opened.flush()
-            os.fsync(opened.fileno())
-        os.replace(draft, path)

@@ -71,6 +71,7 @@ class ReloadTaker:
         self, root: Path, reloader: Reloader, behavior: LiveBehavior, home: Home, installed: Callable[[], None]
     ) -> None:
         self._root, self._reloader, self._behavior, self._installed = root, reloader, behavior, installed
+        self.unwritten = ""
         self._store = SnapshotStore(home)
 
     @property
@@ -105,9 +106,10 @@ class ReloadTaker:
             return
 
         def change() -> Mapping[str, bytes]:
-            there = install(self._root, files)
-            self._installed()
-            return there
+            self.unwritten = install(self._root, files)
+            if not self.unwritten:
+                self._installed()
+            return read_files(self._root)
 
         self._reloader.write(change)
 

@@ -54,10 +54,9 @@ def restore(root: Path, wanted: Mapping[str, bytes] | None) -> Restored:
     try:
         _check(root, paths, there)
         folder = _keep(root, {path: there[path] for path in paths if path in there})
-        _replace(root, {path: wanted.get(path) for path in paths}, there)
+        replace_files(root, {path: wanted.get(path) for path in paths}, there)
     except OSError as error:
-        file = Path(error.filename).name if error.filename else "the folder"
-        return Restored(trouble=f"{file} can't be written: {(error.strerror or str(error)).lower()}")
+        return Restored(trouble=unwritten(error))
     with suppress(ValueError):
         folder = folder.relative_to(root)
     return Restored(paths, folder.as_posix())
@@ -92,8 +91,16 @@ def _new_folder(kept: Path) -> Path:
     raise AssertionError
 
 
-def _replace(root: Path, wanted: Mapping[str, bytes | None], there: Mapping[str, bytes]) -> None:
-    """Write the `wanted` files to the folder, and delete those that are None.
+def unwritten(error: OSError) -> str:
+    """Return the sentence for a person about a file that the disk refused."""
+    file = Path(error.filename).name if error.filename else "the folder"
+    if file.endswith(_NEW):
+        file = file.removeprefix(".").removesuffix(_NEW)
+    return f"{file} can't be written: {(error.strerror or str(error)).lower()}"
+
+
+def replace_files(root: Path, wanted: Mapping[str, bytes | None], there: Mapping[str, bytes]) -> None:
+    """Write the `wanted` files to the project's folder, and delete those that are None.
 
     If one fails, all are restored from `there`, and OSError is raised. Each file is first written under another name,
     so that a full disk is noticed before any file is replaced.
@@ -121,7 +128,8 @@ def _replace(root: Path, wanted: Mapping[str, bytes | None], there: Mapping[str,
                 else:
                     files[path].unlink(missing_ok=True)
         for draft in drafts.values():
-            draft.unlink(missing_ok=True)
+            with suppress(OSError):
+                draft.unlink()
         raise
 
 
