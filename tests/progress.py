@@ -170,9 +170,12 @@ class Progress:
             self._write(f"{tests:,} tests{beside}: takes about {duration(self._expected)}")
 
     def _expectation(self) -> float | None:
-        """Return how long this run will take [s]: as the last one of the same words, else by its CPU time."""
-        if last := self._took().get(self._words()):
-            tests, seconds = last
+        """Return how long this run will take [s]: as the last one of the same words, else by its CPU time.
+
+        The last one does not count if it had less than half as many tests, such as the slowest only.
+        """
+        tests, seconds = self._took().get(self._words(), (0, 0.0))
+        if 2 * tests >= self._tests:
             return seconds * self._tests / tests
         if (cpu := self._config.getoption("expect_cpu")) is None:
             return None

@@ -100,6 +100,11 @@ def test_durations_are_rounded_to_what_a_person_can_use(seconds: float, expected
     assert duration(seconds) == expected
 
 
+def test_a_run_of_few_tests_does_not_say_how_long_many_take(tmp_path: Path) -> None:
+    run(tmp_path, "def test_alone(): pass\n")
+    assert not any("takes about" in line for line in run(tmp_path, SKIPPING))
+
+
 @pytest.mark.parametrize(
     ("share", "passed", "expected", "left"),
     [(0.01, 5.0, None, None), (0.5, 100.0, None, 100.0), (0.0, 100.0, 200.0, 100.0), (0.5, 100.0, 120.0, 60.0)],

@@ -18,13 +18,12 @@ from tests.scanning import matching
 ENGINE = ROOT / "engine/lumen"
 MAKERS = {
     "upkeep/own_folders.py": "the one function; and the user's own cache, which is not in a project",
-    "features/fleet/installing.py": "a folder of the project, which is to be committed",
     "run/new_passage.py": "knowledge/ of the project, which is to be committed",
     "features/console/kept_stories.py": "behaviors/stories/ of the project, which is to be committed",
     "run/new_saying.py": "behaviors/sayings/ of the project, which is to be committed",
     "features/simulation/trials/outcome_cache.py": "a folder within a private one",
     "run/workers/tasks.py": "a temporary folder",
-    "run/reload/restoring.py": "folders of the project that an operator rolls back to, and one within a private one",
+    "run/reload/restoring.py": "folders of the project that is rolled back or sent by a fleet, and one within a private one",
     "run/templates.py": "a folder of the project, for git",
     "features/skills/new_skill.py": "skills/ of the project, for git",
     "run/starting.py": "a project, which is to be committed",

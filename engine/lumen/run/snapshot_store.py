@@ -137,6 +137,10 @@ class SnapshotStore:
             self._wrote(self._home.write(_name(hash), packed(files)))
         return hash
 
+    def has(self, hash: str) -> bool:
+        """Return whether a bundle is stored, damaged or not."""
+        return (self._home.folder / _name(hash)).exists()
+
     def files(self, hash: str) -> dict[str, bytes] | None:
         """Return the files of a stored bundle; None if they are missing or damaged."""
         try:

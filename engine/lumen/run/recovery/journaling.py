@@ -28,14 +28,14 @@ def record_inputs(
     separate folder, so that they do not replace visits. If the project wants no journal, only the last part is kept, in
     memory, and the existing files are deleted.
     """
-    files = _files(behavior.project, rehearsed=rehearsed) if rehearsed or records.keeper else None
+    files = _files(behavior.project, records, rehearsed=rehearsed) if rehearsed or records.keeper else None
     writer = JournalWriter(files, story=story.name if story else "", rehearsed=rehearsed)
     records.inputs = behavior.loop.runtime.recorder = writer
     writer.start()
     return writer
 
 
-def _files(project: Project, *, rehearsed: bool) -> JournalFolder | None:
+def _files(project: Project, records: RunRecords, *, rehearsed: bool) -> JournalFolder | None:
     """Return the folder of the journal; None if no journal is written."""
     retention = wanted = project.section(JournalRetention)
     folder = home_of(Path(project.root), project.one_of_several) / JOURNAL_FOLDER
@@ -45,7 +45,7 @@ def _files(project: Project, *, rehearsed: bool) -> JournalFolder | None:
     if not wanted.wanted:
         files.clear()
         return None
-    if rehearsed:
+    if rehearsed and not (records.keeper and records.keeper.has(project.hash)):
         _keep_files(project)
     return files
 

@@ -50,6 +50,7 @@ class RunDirectory:
         except UsageError as error:
             _log.warning("the exhibition can't be resumed or reached from other terminals: %s", error)
         self.records = RunRecords(self.home)
+        self._files: Mapping[str, bytes] | None = None
         self._ended = False
         self.news: list[ReloadReport] = []
         """Reports on this start as a reload; they are published once the bus is open."""
@@ -61,6 +62,7 @@ class RunDirectory:
 
         If there are no last good files yet, these count as the last good ones.
         """
+        self._files = files
         if keeper := self.records.keeper:
             kept, good = keeper.kept(), keeper.good()
             keeper.store(files)
@@ -90,7 +92,9 @@ class RunDirectory:
     ) -> Reloader:
         """Return the reloader of this run, which checks saved files in another process; `wake` is passed on to it."""
         options = replace(options, seen=self.refused)
-        return Reloader(behavior, narrator, options, records=self.records, applied=self.announce, wake=wake)
+        return Reloader(
+            behavior, narrator, options, files=self._files, records=self.records, applied=self.announce, wake=wake
+        )
 
     def begin_run(
         self, behavior: LiveBehavior, url: str, reloader: Reloader | None, *, fresh: bool

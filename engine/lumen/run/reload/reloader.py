@@ -76,8 +76,9 @@ class _RolledBack(NamedTuple):
 class Reloader:
     """Has saved files checked, stages every good bundle, and answers operators.
 
-    `worker` checks the files, by default in another process. `applied` is called with each bundle that becomes active,
-    and `wake`, on any thread, when files have been checked.
+    `files` are the project's present files; without them they are read. `worker` checks files, by default in another
+    process. `applied` is called with each bundle that becomes active, and `wake`, on any thread, when files have been
+    checked.
     """
 
     def __init__(
@@ -86,6 +87,7 @@ class Reloader:
         narrator: Narrator,
         options: ReloadOptions = AUTO,
         *,
+        files: Mapping[str, bytes] | None = None,
         records: RunRecords | None = None,
         applied: Callable[[Project], None] = lambda _: None,
         wake: Callable[[], None] = lambda: None,
@@ -103,7 +105,7 @@ class Reloader:
         self._validator = BundleValidator(self._worker, lambda: self._running, options.budget)
         self._watcher: FileWatcher[Validation | list[Rehearsal] | _RolledBack] = FileWatcher(
             Path(project.root),
-            read_files(Path(project.root), project.one_of_several),
+            read_files(Path(project.root), project.one_of_several) if files is None else files,
             self._judge,
             hash=options.seen or project.hash,
             quiet=options.quiet,
