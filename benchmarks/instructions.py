@@ -33,6 +33,19 @@ from lumen.project.project_folders import MAIN_FILE, PROJECT_FOLDERS
 RUNS = 3
 FEW, MANY = 1_000, 6_000
 """The events of a short and a long run, after as many as the short one to warm up."""
+WORK = """
+import sys
+from visit import tour
+from statechart import regions, ring, sending
+
+def messages(checked):
+    import bus
+    here, face, body = bus.connect("memory://"), "lumen.visual.face.detection", {"x": 160, "y": 120, "time": 12.5}
+    here = bus.validated(here, bus.lumen.load(sys.argv[1])) if checked else here
+    here.subscribe(face, lambda message: None)
+    return lambda count: [here.publish(face, body) for _ in range(count)] and None
+"""
+"""What an event's row can name; both checkouts have the modules that it imports."""
 COUNTED = re.compile(r"I\s+refs:\s+([\d,]+)")
 HANG = 900
 """The time after which a run counts as hanging [s]."""
@@ -120,13 +133,12 @@ def _event(make: str, place: Place) -> float:
     """Return the instructions of one event of the work that the expression `make` returns."""
 
     def run(count: int) -> int:
-        imports = "from visit import tour; from statechart import regions, ring, sending"
-        return _count(place, "-c", f"{imports}; work = {make}; work({FEW}); work({count})")
+        return _count(place, "-c", f"{WORK}\nwork = {make}; work({FEW}); work({count})", place.project)
 
     return (run(MANY) - run(FEW)) / (MANY - FEW)
 
 
-def _count(place: Place, *words: str) -> int:
+def _count(place: Place, *words: str | Path) -> int:
     """Return the instructions of a Python process. Raises RuntimeError if it fails."""
     path = os.pathsep.join(str(place.checkout / part) for part in ("engine", "benchmarks", ""))
     environment = {**os.environ, "PYTHONPATH": path, "PYTHONHASHSEED": "0", "XDG_CACHE_HOME": str(place.cache)}
@@ -136,7 +148,7 @@ def _count(place: Place, *words: str) -> int:
         (*counter, sys.executable, *words), env=environment, stdout=PIPE, stderr=STDOUT, text=True, timeout=HANG
     )
     if run.returncode or not (found := COUNTED.search(run.stdout)):
-        raise RuntimeError(f"`{' '.join(words)}` in {place.checkout}: {run.stdout.strip()[-300:]}")
+        raise RuntimeError(f"`{' '.join(map(str, words))}` in {place.checkout}: {run.stdout.strip()[-300:]}")
     return int(found[1].replace(",", ""))
 
 
@@ -148,6 +160,8 @@ ROWS: dict[str, Callable[[Place], float]] = {
     "an event of a ring of 15 states": partial(_event, "sending(ring(15))"),
     "an event of three levels, two regions": partial(_event, "sending(regions())"),
     "an event of visits to the tour": partial(_event, "tour()"),
+    "a message in this process, unchecked": partial(_event, "messages(False)"),
+    "the same, checked": partial(_event, "messages(True)"),
 }
 
 

@@ -175,7 +175,7 @@ class Progress:
         The last one does not count if it had less than half as many tests, such as the slowest only.
         """
         tests, seconds = self._took().get(self._words(), (0, 0.0))
-        if 2 * tests >= self._tests:
+        if tests and 2 * tests >= self._tests:
             return seconds * self._tests / tests
         if (cpu := self._config.getoption("expect_cpu")) is None:
             return None

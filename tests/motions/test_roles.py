@@ -105,6 +105,14 @@ def test_a_mirror_knows_roles_and_drops_what_has_no_other_side() -> None:
     assert {joint: keys[0].angle for joint, keys in found.tracks.items() if keys[0].time == 1.0} == {"Turn": -0.5}
 
 
+@pytest.mark.parametrize(("joint", "sides"), [("Turn", False), ("Raise", False), ("Lift", True)])
+def test_only_a_joint_of_one_side_may_have_been_meant_the_other_way(joint: str, sides: bool) -> None:
+    body = replace(GREETER, joints={name: Joint(name, -1.5, 0.5) for name in GREETER.joints})
+    _, said = read(f"keyframes:\n  - {{at: 1s, joints: {{{joint}: 1.0}}}}\n", body)
+    assert [d.code for d in said] == ["angle-out-of-range"]
+    assert said[0].hint.startswith("left and right joints turn in opposite directions: write -1") is sides
+
+
 def test_styles_and_gestures_leave_out_what_a_body_lacks() -> None:
     style = "sways:\n  it: {period: 4s, roles: {head.yaw: 0.02, legs.left.knee: 0.01}}\n"
     found, said = read(style, GREETER, "life")

@@ -154,7 +154,8 @@ class _Hub:
                 while queue:
                     item = queue.popleft()
                     if type(item) is tuple:
-                        self.hand_over(*item)
+                        subscriptions, message = item
+                        self.hand_over(subscriptions, message)
                     else:
                         item()  # type: ignore[operator]
                 if self.drops.untold:
@@ -216,8 +217,9 @@ class MemoryBus(Bus):
         if listeners is None:
             listeners = hub.find(key)
         if listeners:
-            origin = (id or new_id(), sender or self.sender, sent_at or time(), cause)  # as `origin_of` gives it
-            hub.queue.append((listeners, _new(Message, (key, own, reply_to, correlation_id, *origin))))
+            sender, sent_at = sender or self.sender, sent_at or time()  # as `origin_of` gives it
+            own_message = (key, own, reply_to, correlation_id, id or new_id(), sender, sent_at, cause)
+            hub.queue.append((listeners, _new(Message, own_message)))
             if len(hub.queue) > MAX_QUEUED_MESSAGES:
                 hub.shed()
             hub.deliver()

@@ -262,6 +262,15 @@ def test_files_that_somebody_changes_in_the_house_are_left_and_told(house: House
     assert len(house.taker.offered) == 1
 
 
+def test_files_that_are_changed_after_an_order_for_those_that_run_are_left_and_told(house: House) -> None:
+    house.agent.order(ordered(house.signer, house.taker.running))
+    house.agent.tick()
+    assert house.agent.presence(1.0, {}).state == "proved"
+    house.taker.running = "d" * 64
+    house.agent.tick()
+    assert (house.agent.state, house.agent.wants) == ("edited", "")
+
+
 def test_after_three_weeks_the_last_order_counts(house: House) -> None:
     first, last = changed(house.root), changed(house.root, new="Good day! I am Nao.")
     house.agent.order(ordered(house.signer, fingerprint(last), 40))
