@@ -23,7 +23,7 @@ MAKERS = {
     "run/new_saying.py": "behaviors/sayings/ of the project, which is to be committed",
     "features/simulation/trials/outcome_cache.py": "a folder within a private one",
     "run/workers/tasks.py": "a temporary folder",
-    "run/reload/restoring.py": "folders of the project that is rolled back or sent by a fleet, and one within a private one",
+    "run/reload/restoring.py": "folders of a project that is rolled back or updated, and one within a private one",
     "run/templates.py": "a folder of the project, for git",
     "features/skills/new_skill.py": "skills/ of the project, for git",
     "run/starting.py": "a project, which is to be committed",
