@@ -257,6 +257,7 @@ def test_a_placeholder_of_another_tool_is_corrected(text: str, expected: str) ->
         ("30 9,14 * * *", "this is cron syntax: write `09:30, 14:30`"),
         ("0 0 18 ? * MON-FRI", "this is cron syntax: write `mon-fri 18:00`"),
         ("*/5 * * * *", "this is cron syntax: write days before times"),
+        ("75 25 * * *", "this is cron syntax: write days before times"),
         ("18:00-19:00", "`at` is one moment, not a period"),
     ],
 )

@@ -20,6 +20,12 @@ def test_one_story_in_many_ways(copy: Path, words: list[str], capsys: pytest.Cap
     assert names([str(copy), *words], capsys) == ["shy"]
 
 
+def test_a_name_with_the_signs_of_a_pattern_is_that_name(copy: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (copy / "behaviors" / "stories" / "shy [two].yaml").write_text("steps: [{wait: 1s}]\n", "utf-8")
+    assert main(["test", str(copy), "shy [two]"]) == 0
+    assert "1 story" in capsys.readouterr().out
+
+
 @pytest.mark.slow
 def test_a_pattern_means_all_that_fit(copy: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert names([str(copy), "safety_b*", "shy"], capsys) == [
