@@ -80,6 +80,17 @@ def test_any_robot_bus_and_clock() -> None:
     assert robot.closed
 
 
+def test_an_exhibition_that_can_not_start_lets_go_of_its_robot(monkeypatch: pytest.MonkeyPatch) -> None:
+    def fail(exhibition: object) -> None:
+        raise OSError("the disk is gone")
+
+    monkeypatch.setattr("lumen.run.exhibition.Exhibition.start", fail)
+    parrot = Parrot()
+    with pytest.raises(OSError, match="the disk is gone"):
+        lumen.open(ROOT, robot=parrot)
+    assert parrot.closed
+
+
 def test_a_story_runs_to_its_end() -> None:
     with lumen.open(ROOT, story="shy") as exhibition:
         lived = exhibition.run()

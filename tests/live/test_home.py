@@ -27,6 +27,17 @@ def test_a_link_in_a_home_leads_nowhere(tmp_path: Path, name: str) -> None:
     assert precious.read_text() == "{}"
 
 
+@pytest.mark.skipif(sys.platform != "linux", reason="/proc lists the open files")
+def test_asking_for_a_home_that_is_held_leaves_no_file_open(tmp_path: Path) -> None:
+    holder = Home(tmp_path / ".lumen")
+    assert holder.hold()
+    before = len(list(Path("/proc/self/fd").iterdir()))
+    assert not any(Home(holder.folder).hold() for _ in range(10))
+    assert Home(holder.folder).held()
+    assert len(list(Path("/proc/self/fd").iterdir())) == before
+    holder.release()
+
+
 @pytest.mark.skipif(sys.platform == "win32", reason="files have no limit of size there")
 def test_a_disk_that_takes_a_part_of_a_file_leaves_the_one_before(tmp_path: Path) -> None:
     import resource
