@@ -110,6 +110,24 @@ CASES: list[tuple[str, list[tuple[str, str, str]], list[str], Risk]] = [
         Risk.BEHAVIOR,
     ),
     (
+        "a delay of less than a second",
+        [(TOUR, "after: {12s: ", "after: {500ms: ")],
+        ["state `goodbye` waits 500 ms, not 12 s"],
+        Risk.BEHAVIOR,
+    ),
+    (
+        "a motion that is longer",
+        [("motions/goodbye.yaml", "return: 1.3s", "return: 1.8s")],
+        ["motion `goodbye` is 500 ms longer", "motion `goodbye` moves 20 joints differently"],
+        Risk.MOTION,
+    ),
+    (
+        "a motion that moves another joint",
+        [("motions/goodbye.yaml", "gather: {joints: {", "gather: {joints: {LWristYaw: 5, ")],
+        ["motion `goodbye` also moves `LWristYaw`"],
+        Risk.MOTION,
+    ),
+    (
         "a delay that is computed",
         [(TOUR, "after: {12s: ", 'after: {"{{ context.battery }}s": ')],
         ["state `goodbye` waits `{{ context.battery }}s`, not 12 s"],
