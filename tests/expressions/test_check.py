@@ -16,6 +16,7 @@ CONTEXT = {
     "one": {"const": "x"},
     "odd": {"$ref": "#/x"},
     "open": {"type": "object"},
+    "untyped": {"properties": {"a": {"type": "number"}}},
     "dict": {"type": "object", "properties": {}, "additionalProperties": {"type": "number"}},
 }
 HEARD = {
@@ -106,6 +107,8 @@ def test_nothing_wrong(source: str) -> None:
         ("context.list[context.name]", "type-mismatch", "context.name"),
         ("context.list[0] + 1", "type-mismatch", "context.list[0] + 1"),
         ("context.map.b", "unknown-field", "b"),
+        ("context.untyped.b", "unknown-field", "b"),
+        ("context.untyped + 1", "type-mismatch", "context.untyped + 1"),
         ("event.data.rsult", "unknown-field", "rsult"),
         ("event.at", "unknown-field", "at"),
         ("state.name", "unknown-field", "name"),
