@@ -45,7 +45,7 @@ def messages(checked):
     here.subscribe(face, lambda message: None)
     return lambda count: [here.publish(face, body) for _ in range(count)] and None
 """
-"""What an event's row can name; both checkouts have the modules that it imports."""
+"""The functions for the rows of events; both checkouts have the modules that they import."""
 COUNTED = re.compile(r"I\s+refs:\s+([\d,]+)")
 HANG = 900
 """The time after which a run counts as hanging [s]."""

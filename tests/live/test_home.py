@@ -1,5 +1,6 @@
 """A run's home may hold files that Lumen did not write: the sender of a project may include a `.lumen/` folder."""
 
+import os
 import sys
 from contextlib import suppress
 from pathlib import Path
@@ -27,14 +28,17 @@ def test_a_link_in_a_home_leads_nowhere(tmp_path: Path, name: str) -> None:
     assert precious.read_text() == "{}"
 
 
-@pytest.mark.skipif(sys.platform != "linux", reason="/proc lists the open files")
-def test_asking_for_a_home_that_is_held_leaves_no_file_open(tmp_path: Path) -> None:
-    holder = Home(tmp_path / ".lumen")
+def test_asking_for_a_home_that_is_held_leaves_no_file_open(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    opened, closed = list[int](), list[int]()
+    holder, opens, closes = Home(tmp_path / ".lumen"), os.open, os.close
     assert holder.hold()
-    before = len(list(Path("/proc/self/fd").iterdir()))
-    assert not any(Home(holder.folder).hold() for _ in range(10))
+    monkeypatch.setattr(os, "open", lambda *words: opened.append(opens(*words)) or opened[-1])
+    monkeypatch.setattr(os, "close", lambda file: (closed.append(file), closes(file))[1])
+    assert not Home(holder.folder).hold()
     assert Home(holder.folder).held()
-    assert len(list(Path("/proc/self/fd").iterdir())) == before
+    monkeypatch.undo()
+    assert opened
+    assert closed == opened
     holder.release()
 
 

@@ -1,4 +1,4 @@
-"""What the code of a skill can ask of its call: to wait, and whether it is cancelled; without a process."""
+"""A call, as the code of a skill sees it: it waits and can be cancelled. These tests need no process."""
 
 import threading
 from typing import Any
