@@ -8,10 +8,10 @@ import pytest
 import lumen
 from lumen.language.house import RobotSpec, StartPose
 from lumen.lint import check_files
-from lumen.project.building import main_settings
 from lumen.project.chosen_robot import as_robot
 from lumen.project.files import fingerprint, read_files
 from lumen.project.home import home_of, homes_of
+from lumen.project.main_file import main_settings
 
 HELLO = "id: hello\ninitial: here\nstates:\n  here: {entry: {play: nod}}\n"
 OTHER = "id: other\ninitial: there\nstates:\n  there: {entry: {play: shake}}\n"

@@ -4,7 +4,7 @@ from pathlib import Path
 
 from lumen.features.console.settings import ConsoleSettings
 from lumen.features.show.settings import Show
-from lumen.project.building import main_settings
+from lumen.project.main_file import main_settings
 from lumen.project.settings import Settings
 from tests.tables import for_each
 

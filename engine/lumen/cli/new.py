@@ -8,8 +8,8 @@ from lumen.errors import UsageError
 from lumen.feature import owner, table
 from lumen.language.diagnostics import did_you_mean
 from lumen.project.broken_features import called
-from lumen.project.building import main_settings
 from lumen.project.lending import shipped_models
+from lumen.project.main_file import main_settings
 from lumen.project.running_project import own_project
 from lumen.run.starting import STARTERS, start_project
 from lumen.run.templates import TEMPLATES, write_template

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import lumen
 from lumen.errors import LumenError
-from lumen.project.building import main_settings
 from lumen.project.files import composed
+from lumen.project.main_file import main_settings
 from lumen.project.running_project import running_project
 
 

@@ -26,8 +26,8 @@ from lumen.language.projects import Project
 from lumen.language.stories import Story
 from lumen.ports import Clock
 from lumen.project.broken_features import broken_features
-from lumen.project.building import main_settings
 from lumen.project.home import home_of as home_of_run
+from lumen.project.main_file import main_settings
 from lumen.project.running_project import is_substituted, project_to_run
 from lumen.robot.bounded_robot import ability
 from lumen.run.audio_track import AudioTrack

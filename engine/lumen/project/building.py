@@ -4,7 +4,7 @@ import hashlib
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from functools import partial
-from pathlib import Path, PurePosixPath
+from pathlib import PurePosixPath
 from typing import Any, TypeVar
 from unicodedata import normalize
 
@@ -31,12 +31,13 @@ from lumen.project.chosen_robot import chosen_robot
 from lumen.project.common_words import COMMON, COMMON_FILE, is_shipped, with_common_words
 from lumen.project.controllers import build_controller
 from lumen.project.draft import ProjectDraft
-from lumen.project.files import LEADS_OUT, MISTAKEN_FOLDERS, Unreadable, fingerprint, read_main_file
+from lumen.project.files import LEADS_OUT, MISTAKEN_FOLDERS, Unreadable, fingerprint
 from lumen.project.functions import build_function, joined
 from lumen.project.knowledge import MARKDOWN_SUFFIX, build_passage, build_questions
 from lumen.project.lending import lend, shipped_models
 from lumen.project.life import build_gestures, build_life
 from lumen.project.linking import link, with_robots
+from lumen.project.main_file import settings_builder
 from lumen.project.messages import SCHEMA_SUFFIX, build_message
 from lumen.project.motions import build_motions
 from lumen.project.project_folders import (
@@ -56,7 +57,7 @@ from lumen.project.project_folders import (
     kind_in,
     life_of,
 )
-from lumen.project.settings import Settings, build_settings, other_vocabulary
+from lumen.project.settings import Settings, other_vocabulary
 from lumen.project.stories import build_sayings, build_story
 from lumen.project.unread import robots_own_hint
 from lumen.project.used_routes import used_routes
@@ -171,16 +172,6 @@ def sayings_parts(files: Mapping[str, bytes]) -> ProjectDraft:
     return draft({file: content for file, content in files.items() if file.startswith(f"{SAYINGS_FOLDER}/")})
 
 
-def main_settings(root: Path, robot: str = "") -> Settings | None:
-    """Return the settings in lumen.yaml, whatever errors it has, without reading other files; None if it is unreadable.
-
-    `robot` is the name of one of several robots; empty for the first.
-    """
-    found, content = ProjectDraft({}), read_main_file(root)
-    main = _main(found, content, robot)
-    return main.built if main else None
-
-
 def assemble(found: ProjectDraft, root: str) -> Project:
     """Return the project that a draft without errors describes."""
     settings, body = found.settings, found.body
@@ -225,8 +216,7 @@ def assemble(found: ProjectDraft, root: str) -> Project:
 
 def _main(found: ProjectDraft, content: bytes, robot: str) -> BuiltFile[Settings] | None:
     """Return the content of lumen.yaml for that robot; None if the file can't be read."""
-    build = partial(build_settings, robot=robot)
-    return _read(found, MAIN_FILE, content, MAIN_KIND, lambda data, report, name: build(data, report), robot)
+    return _read(found, MAIN_FILE, content, MAIN_KIND, settings_builder(robot), robot)
 
 
 def _wanted(settings: Settings, models: Mapping[str, BuiltFile[Body]]) -> Iterator[str]:

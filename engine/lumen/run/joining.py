@@ -15,7 +15,7 @@ from lumen.bus.addresses import open_bus
 from lumen.errors import BusError, BusUnreachableError, UsageError
 from lumen.language.routing_keys import default_key
 from lumen.ports import Bus, MessageHandler
-from lumen.project.building import main_settings
+from lumen.project.main_file import main_settings
 from lumen.run.parts.own_module import BUS_VARIABLE, MODULE_VARIABLE, PROJECT_VARIABLE, ROBOT_VARIABLE
 from lumen.run.presence import HERE, LEAVES, PRESENCE_PERIOD, PRESENCE_ROUTE, PRESENCE_TTL
 from lumen.run.reaching import reach_exhibition

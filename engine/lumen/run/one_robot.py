@@ -5,7 +5,7 @@ from pathlib import Path
 
 from lumen.errors import UsageError
 from lumen.language.diagnostics import did_you_mean
-from lumen.project.building import main_settings
+from lumen.project.main_file import main_settings
 from lumen.project.settings import Settings
 
 

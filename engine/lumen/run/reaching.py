@@ -11,8 +11,8 @@ from lumen.errors import BusUnreachableError
 from lumen.language.causes import TERMINAL
 from lumen.language.routing_keys import default_key
 from lumen.ports import Bus
-from lumen.project.building import main_settings
 from lumen.project.home import ADDRESS_FILE, Home, homes, homes_of
+from lumen.project.main_file import main_settings
 from lumen.project.running_project import running_project
 from lumen.project.settings import Settings
 from lumen.robot.robot_routes import COMMAND_ROUTE, STOP_ROUTE

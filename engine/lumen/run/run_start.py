@@ -10,7 +10,7 @@ from lumen.feature import rows
 from lumen.language.diagnostics import Severity
 from lumen.language.projects import Project
 from lumen.project.broken_features import called, package_at_fault
-from lumen.project.building import main_settings
+from lumen.project.main_file import main_settings
 from lumen.project.settings import Settings
 from lumen.run.presence import BRAIN, ROBOT_PART
 from lumen.run.recovery.run_directory import RunDirectory

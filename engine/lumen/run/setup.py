@@ -14,7 +14,7 @@ from lumen.language.projects import Project
 from lumen.language.stories import Story
 from lumen.ports import Advances, Clock, Dozes, Hall, MeasuresPace, Robot
 from lumen.project.broken_features import called, faulty, need_made, shown
-from lumen.project.building import main_settings
+from lumen.project.main_file import main_settings
 from lumen.robot.bounded_robot import BoundedRobot, ability
 from lumen.robot.checked_robot import CheckedRobot
 from lumen.run.driver import drivers_in, fault_of, is_driver, make_robot

@@ -4,7 +4,7 @@ import re
 import shutil
 from pathlib import Path, PurePosixPath
 
-from lumen.project.building import main_settings
+from lumen.project.main_file import main_settings
 from lumen.project.packaged import shipped_root
 from lumen.project.project_folders import MAIN_FILE, PROJECT_FOLDERS
 

@@ -9,7 +9,7 @@ from lumen.errors import UsageError
 from lumen.expressions.function_table import all_functions
 from lumen.language.folders import DRIVERS_FOLDER, FUNCTIONS_FOLDER
 from lumen.language.modules import module_names
-from lumen.project.building import main_settings
+from lumen.project.main_file import main_settings
 from lumen.project.project_folders import MAIN_FILE
 
 FUNCTION = """\

@@ -7,7 +7,7 @@ from lumen.errors import UsageError
 from lumen.features.alerts.alert import Origin
 from lumen.features.alerts.desk import AlertDesk
 from lumen.features.alerts.settings import Alerts
-from lumen.project.building import main_settings
+from lumen.project.main_file import main_settings
 from lumen.project.running_project import own_project
 
 

@@ -9,7 +9,7 @@ from functools import partial
 from lumen.cli.reach import configure_reach
 from lumen.extras import demand
 from lumen.features.console.settings import CONSOLE_HOST, CONSOLE_PORT, ConsoleSettings
-from lumen.project.building import main_settings
+from lumen.project.main_file import main_settings
 from lumen.project.running_project import project_to_run
 from lumen.run.reaching import reach_exhibition
 from lumen.upkeep.heap import give_back

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from lumen.language.routing_keys import CONFIG_STATUS, DEFAULT_ALIASES, DEFAULT_KEYS, default_key, key_of_robot
-from lumen.project.building import main_settings
+from lumen.project.main_file import main_settings
 from lumen.robot.robot_routes import COMMAND_ROUTE, STOP_ROUTE
 from lumen.run.asking import operator_key
 from lumen.run.reaching import Reached

@@ -17,9 +17,10 @@ from lumen.language.iso_time import local_time
 from lumen.language.people import name_key
 from lumen.language.routing_keys import default_key
 from lumen.ports import Bus
-from lumen.project.building import draft, main_settings
+from lumen.project.building import draft
 from lumen.project.files import read_files
 from lumen.project.home import home_of
+from lumen.project.main_file import main_settings
 from lumen.project.settings import Settings
 from lumen.run.asking import OPERATOR_ANSWERS, send_request
 from lumen.run.forgetting.added import Forgetting, ForgottenPlace, out_of_reach
