@@ -1,5 +1,6 @@
 """A recording is readable by others, whole or cut, and cut ones are recovered."""
 
+import json
 import random
 import shutil
 from pathlib import Path
@@ -31,12 +32,23 @@ JSON = st.recursive(
 @settings(max_examples=40)
 def test_a_body_and_where_it_came_from_come_back(body: object) -> None:
     (item,) = encoded(said("lumen.some.key", body))
-    import json
-
     found, origin = origin_of(json.loads(item.data))
     assert found == body
     assert origin == {"id": "m0", "sender": "a test", "cause": "d3"}
     assert (item.came, item.sent) == (int(BEGAN * 1e9), int(BEGAN * 1e9))
+
+
+def test_what_json_lacks_becomes_null_and_half_a_sign_is_kept() -> None:
+    (item,) = encoded(said("lumen.some.key", {"text": "a\ud800", "angles": [float("nan"), -float("inf"), 2**70]}))
+    found, _ = origin_of(strict_json(item.data))
+    assert found == {"text": "a\ud800", "angles": [None, None, 2**70]}
+
+
+def strict_json(data: bytes) -> object:
+    def refuse(name: str) -> None:
+        raise AssertionError(f"{name} is not JSON")
+
+    return json.loads(data, parse_constant=refuse)
 
 
 def test_a_picture_is_a_compressed_image_of_the_very_bytes(tmp_path: Path) -> None:

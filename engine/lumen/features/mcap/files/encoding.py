@@ -92,11 +92,14 @@ def origin_of(data: Mapping[str, Any]) -> tuple[Any, dict[str, str]]:
 
 
 def json_bytes(data: Any) -> bytes:
-    """Encode JSON data as bytes; lone surrogates, which orjson rejects, are escaped."""
+    """Encode JSON data as bytes.
+
+    A number that JSON lacks becomes null. Lone surrogates and integers above 64 bits, which orjson rejects, are kept.
+    """
     try:
         return orjson.dumps(data)
     except TypeError:
-        return json.dumps(data).encode("utf-8", "replace")
+        return json.dumps(json.loads(json.dumps(data), parse_constant=lambda _: None)).encode()
 
 
 def _envelope(message: Message, body: Any) -> dict[str, Any]:
