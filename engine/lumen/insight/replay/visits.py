@@ -10,7 +10,7 @@ from typing import NamedTuple
 from lumen.errors import LumenError
 from lumen.insight.replay.entries import JournalInput, JournalJump, RecordedEntry
 from lumen.insight.replay.journal_clock import JournalClock
-from lumen.language.machines import MachineDefinition, StateKind
+from lumen.language.machines import MachineDefinition
 from lumen.statechart import initial
 
 DROPPED = "dropped timer"
@@ -52,8 +52,7 @@ def waiting_state(machine: MachineDefinition) -> str:
     except LumenError:
         return ""
     while children := machine.states[path].children:
-        inner = [child for child in children if machine.states[child].kind is not StateKind.HISTORY]
-        path = next((child for child in inner if machine.states[child].name in active), "")
+        path = next((child for child in children if machine.states[child].name in active), "")
         if not path:
             break
     return machine.states[path].name
