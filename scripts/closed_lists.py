@@ -13,7 +13,8 @@ Lists to which no package could want to add anything are closed on purpose (`ON_
 import ast
 import re
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import cache
 from typing import NamedTuple
 
 from scopes import Function, Package, Place, Scoped, assigned, last_word
@@ -66,7 +67,8 @@ def _key(place: Place) -> tuple[str, str]:
     return place.path, place.why.partition(":")[0].rpartition(" ")[2]
 
 
-def _found(package: Package) -> list[Place]:
+@cache
+def _found(package: Package) -> Sequence[Place]:
     """Return the lists of all four kinds, in the order of the files; one of two kinds counts once."""
     finders = (tables, names, chains, enumerations)
     found: dict[tuple[str, int], Place] = {}
@@ -133,17 +135,22 @@ def enumerations(package: Package) -> Iterator[Place]:
     told: dict[str, set[str]] = defaultdict(set)
     for file in package.files:
         named = {name for name in members if name in file.text and file != package.classes[name][0].file}
-        for node in _separate(file.tree) if named else ():
-            found: dict[str, set[str]] = defaultdict(set)
-            for each in ast.walk(node):
-                if isinstance(each, ast.Attribute) and isinstance(each.value, ast.Name):
-                    found[each.value.id].add(each.attr)
-            for name in named:
-                if len(found[name] & members[name]) >= ROWS:
-                    told[name].add(file.path)
+        named &= _distinguished(members, file.of(ast.Attribute))
+        for node in _separate(file) if named else ():
+            for name in named & _distinguished(members, ast.walk(node)):
+                told[name].add(file.path)
     for name, files in told.items():
         if len(files) >= FILES:
             yield package.classes[name][0].place(f"enumeration {name}: told apart in {_some(files)}")
+
+
+def _distinguished(members: Mapping[str, set[str]], nodes: Iterable[ast.AST]) -> set[str]:
+    """Return the enumerations of which these nodes name enough members."""
+    found: dict[str, set[str]] = defaultdict(set)
+    for each in nodes:
+        if isinstance(each, ast.Attribute) and isinstance(each.value, ast.Name):
+            found[each.value.id].add(each.attr)
+    return {name for name, its in members.items() if len(found[name] & its) >= ROWS}
 
 
 class _Literal(NamedTuple):
@@ -236,12 +243,11 @@ def _made(body: Iterable[ast.stmt], things: Things) -> set[str]:
     return {name for name in found if CLASS.fullmatch(name) and not name.endswith("Error")}
 
 
-def _separate(tree: ast.Module) -> Iterator[ast.AST]:
+def _separate(file: SourceFile) -> Iterator[ast.AST]:
     """Yield the functions of a file, and its other statements."""
-    for node in ast.walk(tree):
-        if isinstance(node, Function):
-            yield node
-    yield from (node for node in tree.body if not isinstance(node, ast.ClassDef | Function))
+    yield from file.of(ast.FunctionDef)
+    yield from file.of(ast.AsyncFunctionDef)
+    yield from (node for node in file.tree.body if not isinstance(node, ast.ClassDef | Function))
 
 
 def _some(things: Iterable[str]) -> str:

@@ -52,15 +52,9 @@ def small_modules(files: Sequence[SourceFile]) -> Iterator[Place]:
     readers: dict[str, set[str]] = defaultdict(set)
     named: set[str] = set()
     for file in files:
-        for node in ast.walk(file.tree):
-            if isinstance(node, ast.ImportFrom) and node.module:
-                for path in (_path(node.module), *(_path(f"{node.module}.{alias.name}") for alias in node.names)):
-                    readers[path].add(file.path)
-            elif isinstance(node, ast.Import):
-                for alias in node.names:
-                    readers[_path(alias.name)].add(file.path)
-            elif isinstance(node, ast.Constant) and isinstance(node.value, str):
-                named.add(_path(node.value.partition(":")[0]))
+        for module in _imported(file):
+            readers[_path(module)].add(file.path)
+        named.update(map(_path, _import_strings(file)))
     for path, lines in sizes.items():
         only = readers[path]
         if lines < SMALL and len(only) == 1 and path not in named and path not in ALONE:
@@ -93,12 +87,23 @@ def elsewhere_by_feature(files: Sequence[SourceFile]) -> dict[str, list[str]]:
 
 def _named(file: SourceFile) -> Iterator[str]:
     """Yield the modules that a file may name: in an import, or in an import string."""
-    for node in ast.walk(file.tree):
-        if isinstance(node, ast.ImportFrom) and node.module:
+    yield from _imported(file)
+    yield from _import_strings(file)
+
+
+def _imported(file: SourceFile) -> Iterator[str]:
+    """Yield the modules that a file imports, and the names from them, which may be modules too."""
+    for node in file.of(ast.ImportFrom):
+        if node.module:
             yield from (node.module, *(f"{node.module}.{alias.name}" for alias in node.names))
-        elif isinstance(node, ast.Import):
-            yield from (alias.name for alias in node.names)
-        elif isinstance(node, ast.Constant) and isinstance(node.value, str):
+    for node in file.of(ast.Import):
+        yield from (alias.name for alias in node.names)
+
+
+def _import_strings(file: SourceFile) -> Iterator[str]:
+    """Yield the part before the colon of each text in a file; that of an import string is a module."""
+    for node in file.of(ast.Constant):
+        if isinstance(node.value, str):
             yield node.value.partition(":")[0]
 
 
@@ -106,13 +111,12 @@ def _imports(files: Sequence[SourceFile]) -> Iterator[tuple[str, int, str]]:
     """Yield file, line and module of each import of a module in a feature's folder."""
     folders = {path.split("/")[1] for file in files if (path := file.path).count("/") > 1 and _feature(path)}
     for file in files:
-        for node in ast.walk(file.tree):
-            names = [node.module or ""] if isinstance(node, ast.ImportFrom) else []
-            names += [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
-            for name in names:
-                parts = name.split(".")
-                if parts[:2] == ["lumen", "features"] and len(parts) > 2 and parts[2] in folders:
-                    yield file.path, getattr(node, "lineno", 1), name
+        found = [(node.lineno, node.module or "") for node in file.of(ast.ImportFrom)]
+        found += [(node.lineno, alias.name) for node in file.of(ast.Import) for alias in node.names]
+        for line, name in found:
+            parts = name.split(".")
+            if parts[:2] == ["lumen", "features"] and len(parts) > 2 and parts[2] in folders:
+                yield file.path, line, name
 
 
 def _feature(path: str) -> str | None:

@@ -8,8 +8,6 @@ from typing import NamedTuple
 from scopes import Place
 from source_files import SourceFile
 
-Definition = ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef
-
 
 class Meaning(NamedTuple):
     """The meaning of a word as the name of something defined, and the files and folders that may define it."""
@@ -79,15 +77,15 @@ def names_of_two_meanings(files: Sequence[SourceFile]) -> Iterator[Place]:
 def _defined(file: SourceFile) -> Iterator[tuple[str, int]]:
     """Yield the names that a file defines for others, each with its line."""
     yield PurePosixPath(file.path).stem, 1
-    for node in ast.walk(file.tree):
-        if isinstance(node, Definition):
-            yield node.name, node.lineno
-            if isinstance(node, ast.ClassDef):
-                yield from _assigned(node.body)
-        elif isinstance(node, ast.Attribute) and isinstance(node.ctx, ast.Store):
-            yield node.attr, node.lineno
-        elif isinstance(node, ast.Module):
-            yield from _assigned(node.body)
+    yield from _assigned(file.tree.body)
+    for kind in file.of(ast.ClassDef):
+        yield kind.name, kind.lineno
+        yield from _assigned(kind.body)
+    for function in (*file.of(ast.FunctionDef), *file.of(ast.AsyncFunctionDef)):
+        yield function.name, function.lineno
+    for attribute in file.of(ast.Attribute):
+        if isinstance(attribute.ctx, ast.Store):
+            yield attribute.attr, attribute.lineno
 
 
 def _assigned(body: Sequence[ast.stmt]) -> Iterator[tuple[str, int]]:

@@ -11,6 +11,8 @@ from source_files import SourceFile
 
 Function = ast.FunctionDef | ast.AsyncFunctionDef
 KEPT = (ast.stmt, ast.Call)
+LEAVES = (ast.Name, ast.Constant, ast.expr_context, ast.operator, ast.cmpop)
+"""Nodes without statements or calls below."""
 OWN = {"self", "cls"}
 
 
@@ -49,8 +51,20 @@ class Package:
         self.files = files
         self._nodes: dict[type[ast.AST], list[Scoped]] = defaultdict(list)
         for file in files:
-            for scoped in _scoped(file.tree, file, None, ()):
-                self._nodes[type(scoped.node)].append(scoped)
+            self._enter(file.tree, file, None, ())
+
+    def _enter(
+        self, parent: ast.AST, file: SourceFile, owner: ast.ClassDef | None, functions: tuple[Function, ...]
+    ) -> None:
+        for node in ast.iter_child_nodes(parent):
+            if isinstance(node, KEPT):
+                self._nodes[type(node)].append(Scoped(node, file, owner, functions))
+            if isinstance(node, ast.ClassDef):
+                self._enter(node, file, node, ())
+            elif isinstance(node, Function):
+                self._enter(node, file, owner, (*functions, node))
+            elif not isinstance(node, LEAVES):
+                self._enter(node, file, owner, functions)
 
     def of(self, *kinds: type[ast.AST]) -> Iterator[Scoped]:
         """Return the nodes of these kinds, one kind after another, in the order of the files."""
@@ -77,20 +91,6 @@ class Package:
         if root not in self.classes:
             raise LookupError(f"no class is named {root}: the figures that need it are not known")
         return {name for name in self.classes if root in self.ancestors(name)}
-
-
-def _scoped(
-    parent: ast.AST, file: SourceFile, owner: ast.ClassDef | None, functions: tuple[Function, ...]
-) -> Iterator[Scoped]:
-    for node in ast.iter_child_nodes(parent):
-        if isinstance(node, KEPT):
-            yield Scoped(node, file, owner, functions)
-        if isinstance(node, ast.ClassDef):
-            yield from _scoped(node, file, node, ())
-        elif isinstance(node, Function):
-            yield from _scoped(node, file, owner, (*functions, node))
-        else:
-            yield from _scoped(node, file, owner, functions)
 
 
 def last_word(expression: ast.expr) -> str:

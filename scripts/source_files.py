@@ -1,13 +1,19 @@
 """Python files as trees, and walks through their statements."""
 
 import ast
+from collections import defaultdict
 from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
-from typing import NamedTuple
+from typing import TypeVar, cast
+
+N = TypeVar("N", bound=ast.AST)
 
 
-class SourceFile(NamedTuple):
-    """A Python file of the package."""
+@dataclass(frozen=True, eq=False)
+class SourceFile:
+    """A Python file of the package, and an index of its nodes."""
 
     path: str
     module: str
@@ -18,6 +24,17 @@ class SourceFile(NamedTuple):
     def lines(self) -> int:
         """Return the number of lines."""
         return len(self.text.splitlines())
+
+    def of(self, *kinds: type[N]) -> Iterator[N]:
+        """Yield the nodes of these kinds at any depth, one kind after another; the tree is walked once for all."""
+        return (cast(N, node) for kind in kinds for node in self._nodes.get(kind, ()))
+
+    @cached_property
+    def _nodes(self) -> dict[type[ast.AST], list[ast.AST]]:
+        found: dict[type[ast.AST], list[ast.AST]] = defaultdict(list)
+        for node in ast.walk(self.tree):
+            found[type(node)].append(node)
+        return dict(found)
 
 
 def read(package: Path) -> list[SourceFile]:
