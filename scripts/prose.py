@@ -77,9 +77,15 @@ class Prose(NamedTuple):
     text: str
 
     @property
-    def hits(self) -> list[str]:
+    def hits(self) -> Sequence[str]:
         """The kind of each pattern that the text matches."""
-        return [kind for kind, pattern in COMPILED.items() if pattern.search(self.text)]
+        return kinds(self.text)
+
+
+@cache
+def kinds(text: str) -> Sequence[str]:
+    """Return the kind of each pattern that a text matches."""
+    return tuple(kind for kind, pattern in COMPILED.items() if pattern.search(text))
 
 
 class Counted(NamedTuple):
@@ -110,8 +116,13 @@ class Counted(NamedTuple):
         )
 
 
-def messages(file: str) -> Iterator[Prose]:
-    """Yield each string of a Python module or of the console's texts that holds a sentence, without docstrings."""
+@cache
+def messages(file: str) -> Sequence[Prose]:
+    """Return each string of a Python module or of the console's texts that holds a sentence, without docstrings."""
+    return tuple(_messages(file))
+
+
+def _messages(file: str) -> Iterator[Prose]:
     if file.endswith(".js"):
         for number, row in enumerate((ROOT / file).read_text(encoding="utf-8").splitlines(), 1):
             yield from (Prose(file, number, told) for told in re.findall(r'": "((?:[^"\\\\]|\\\\.)+)"', row))
@@ -182,7 +193,7 @@ def sentences(file: str) -> Iterator[Prose]:
             text += (" " if text else "") + row.strip().removeprefix("- ").lstrip("| ")
 
 
-def prose(file: str) -> Iterator[Prose]:
+def prose(file: str) -> Iterable[Prose]:
     """Return all text in a file that a person reads."""
     if file.endswith(".md"):
         return paragraphs(file)
@@ -339,7 +350,7 @@ def _functions(modules: Iterable[Path]) -> list[tuple[str, str]]:
     return found
 
 
-def _all(read: Callable[[str], Iterator[Prose]], listed: Iterable[str]) -> list[Prose]:
+def _all(read: Callable[[str], Iterable[Prose]], listed: Iterable[str]) -> list[Prose]:
     return [told for file in listed for told in read(file)]
 
 
