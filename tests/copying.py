@@ -1,9 +1,10 @@
 """Copies of projects of this repository."""
 
 import shutil
+from collections.abc import Iterable
 from pathlib import Path
 
-from lumen.project.project_folders import PROJECT_FOLDERS
+from lumen.project.project_folders import MAIN_FILE, PROJECT_FOLDERS
 from tests import ROOT
 
 SHIPPED_FOLDERS = tuple(name for name in PROJECT_FOLDERS if (ROOT / name).is_dir())
@@ -11,6 +12,14 @@ SHIPPED_FOLDERS = tuple(name for name in PROJECT_FOLDERS if (ROOT / name).is_dir
 
 
 def copied_project(source: Path, target: Path) -> Path:
-    """Copy a project's folder without what runs left in it, and return the copy; the target may exist."""
-    left = shutil.ignore_patterns(".lumen", "__pycache__")
-    return Path(shutil.copytree(source, target, ignore=left, dirs_exist_ok=True))
+    """Copy a project's folder without what runs left in it, and return the copy; the target may exist.
+
+    The shipped project is copied without the rest of the repository, in which its virtual environment may be.
+    """
+    return Path(shutil.copytree(source, target, ignore=_left_out, dirs_exist_ok=True))
+
+
+def _left_out(folder: str, names: Iterable[str]) -> set[str]:
+    if Path(folder) == ROOT:
+        return {*names} - {MAIN_FILE, *SHIPPED_FOLDERS}
+    return {".lumen", "__pycache__"}.intersection(names)

@@ -6,7 +6,6 @@ from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from random import Random
-from shutil import copytree
 from typing import Any
 
 import pytest
@@ -20,7 +19,6 @@ from lumen.language.projects import Project
 from lumen.language.stories import Expect, Speak
 from lumen.lint import check_files
 from lumen.project.files import read_files
-from lumen.project.project_folders import PROJECT_FOLDERS
 from lumen.run.rehearsal import rehearse
 from lumen.run.replaying.journals import KeptBundles, chosen
 from lumen.run.replaying.other_files import with_machines
@@ -58,14 +56,7 @@ def shipped() -> Iterator[Any]:
 def copies(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
     """Copies in which visits can be recorded."""
     folder = tmp_path_factory.mktemp("copies")
-    for name, root in EXAMPLES.items():
-        (folder / name).mkdir()
-        for part in ("lumen.yaml", *PROJECT_FOLDERS):
-            if (root / part).is_dir():
-                copytree(root / part, folder / name / part)
-            elif (root / part).is_file():
-                (folder / name / part).write_bytes((root / part).read_bytes())
-    return {name: folder / name for name in EXAMPLES}
+    return {name: copied_project(root, folder / name) for name, root in EXAMPLES.items()}
 
 
 def recorded(folder: Path, story: str) -> list[RecordedVisit]:

@@ -1,13 +1,11 @@
-import shutil
 from pathlib import Path
 
 import pytest
 
 import lumen
 from lumen.language.projects import Project
-from lumen.project.project_folders import MAIN_FILE
 from tests import ROOT
-from tests.copying import SHIPPED_FOLDERS
+from tests.copying import copied_project
 
 
 @pytest.fixture(scope="session")
@@ -24,7 +22,4 @@ def copy(tmp_path: Path) -> Path:
 
 def copied(folder: Path) -> Path:
     """Copy the shipped exhibition into the folder, and return the folder."""
-    shutil.copy(ROOT / MAIN_FILE, folder)
-    for part in SHIPPED_FOLDERS:
-        shutil.copytree(ROOT / part, folder / part)
-    return folder
+    return copied_project(ROOT, folder)

@@ -1,6 +1,5 @@
 """The language server as an editor meets it: `lumen lsp` over standard input and output."""
 
-import shutil
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -8,7 +7,7 @@ from typing import Any
 import pytest
 
 from tests import ROOT
-from tests.copying import SHIPPED_FOLDERS
+from tests.copying import copied_project
 from tests.features.editor.client import Client
 from tests.tables import for_each
 
@@ -19,12 +18,7 @@ TOUR = "behaviors/tour.yaml"
 
 @pytest.fixture(scope="module")
 def project(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    root = tmp_path_factory.mktemp("editor") / "hall and stand"
-    root.mkdir()
-    shutil.copy(ROOT / "lumen.yaml", root)
-    for folder in SHIPPED_FOLDERS:
-        shutil.copytree(ROOT / folder, root / folder)
-    return root
+    return copied_project(ROOT, tmp_path_factory.mktemp("editor") / "hall and stand")
 
 
 @pytest.fixture(scope="module")
