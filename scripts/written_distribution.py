@@ -1,10 +1,13 @@
 """Distributions written into a folder as an installer would leave them, and used from there by this process."""
 
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from functools import cache
 from importlib import invalidate_caches
 from pathlib import Path
+from types import ModuleType
+from typing import Any
 
 
 def write_distribution(folder: Path, name: str, manifest: str, files: Mapping[str, str], version: str = "1.0") -> None:
@@ -47,6 +50,11 @@ def _forget() -> None:
         idle.end_idle()
     for name, module in list(sys.modules.items()):
         if name.partition(".")[0] == "lumen":
-            for value in list(vars(module).values()):
-                if hasattr(value, "cache_clear"):
-                    value.cache_clear()
+            for function in _cached(module):
+                function.cache_clear()
+
+
+@cache
+def _cached(module: ModuleType) -> Sequence[Any]:
+    """Return the functions of a module with a cache; a function that the module imported is one of another module."""
+    return [value for value in vars(module).values() if hasattr(value, "cache_clear")]
