@@ -1,6 +1,7 @@
 """The time of day in a story, which begins at the time that the story sets, on any real day."""
 
 from datetime import date
+from functools import cache
 
 from lumen.expressions.wall_clock import MICROSECONDS, moment, next_moment
 from lumen.language.hours import Schedule
@@ -15,7 +16,11 @@ MONDAY = date(2026, 6, 1)
 
 def story_epoch(story: Story | None, timezone: str) -> float:
     """Return when a story begins by the clock in a time zone [s since 1970]; without a story, the default time."""
-    begins = (story and story.clock) or MORNING
+    return _epoch((story and story.clock) or MORNING, timezone)
+
+
+@cache  # a story asks in each tick
+def _epoch(begins: Schedule, timezone: str) -> float:
     midnight = Schedule((0,), dates=(min(begins.dates, default=MONDAY),))
     first = next_moment(midnight, moment(-1e10, 0.0), timezone)
     found = next_moment(begins, (first or 0) - 1, timezone)
