@@ -1,7 +1,7 @@
 """Reachy Mini's adapter on the real daemon (`reachy-mini` of PyPI), which has no robot: mock-up and physics."""
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 import pytest
@@ -47,6 +47,11 @@ def robot(project: Project, daemon: RealDaemon) -> Iterator[Driven]:
     one.close()
 
 
+def turned(robot: Driven) -> float:
+    """Return how far the head is turned to the left [rad]."""
+    return robot.joints()["head_yaw"]
+
+
 def test_it_answers_as_it_was_recorded(daemon: RealDaemon) -> None:
     assert observed(daemon.url) == json.loads(RECORDED.read_text())
 
@@ -54,29 +59,39 @@ def test_it_answers_as_it_was_recorded(daemon: RealDaemon) -> None:
 def test_it_keeps_the_promises_of_a_robot(robot: Driven, project: Project) -> None:
     robot.robot.start("", Live(project.life["lively"]))
     assert robot.answer("l", Look(0.5, 0.2)).name == "done.command.l"
-    assert robot.joints()["head_yaw"] == pytest.approx(0.5, abs=0.06)
+    robot.until(lambda: turned(robot) == pytest.approx(0.5, abs=0.06), "the head has turned")
     assert robot.answer("far", Look(2.4, 0.0)).name == "done.command.far"
-    assert abs(robot.joints()["head_yaw"] - robot.joints()[BODY]) < 1.0
+    robot.until(lambda: abs(turned(robot) - robot.joints()[BODY]) < 1.0, "the trunk has turned as well")
     assert robot.answer("p", Posture("Curious")).name == "done.command.p"
     assert robot.answer("n", Perform(project.motions["nod"])).name == "done.command.n"
     robot.robot.start("", Live(project.life["calm"]))
     robot.robot.start("", Aim({"head_yaw": -0.4, "head_pitch": 0.1}, 0.5))
-    robot.until(lambda: abs(robot.joints()["head_yaw"] + 0.4) < 0.1, "the head has turned")
+    robot.until(lambda: abs(turned(robot) + 0.4) < 0.1, "the head has turned")
 
 
 def test_every_shipped_motion_is_reached(robot: Driven, project: Project) -> None:
-    """The daemon holds the last pose that it reached, without an error: the head is compared with its goal."""
+    """The daemon holds the last pose that it reached, without an error: the head is compared with its goals.
+
+    A head that follows late meets each goal later; half of the goals must be met, as the head may pass others between
+    two readings.
+    """
     for name in ("greet", "curious", "goodbye"):
         robot.robot.start(name, Perform(project.motions[name]))
-        far = []
+        goals, readings = [], []
         while not robot._answered(name):
             robot.tick()
-            mover = robot.robot._mover
-            far.append(
-                max(abs(mover.sent[joint] - angle) for joint, angle in robot.joints().items() if "head" in joint)
-            )
+            goals.append(dict(robot.robot._mover.sent))
+            readings.append(robot.joints())
         assert robot._answered(name)[0].data is None
-        assert sorted(far)[len(far) // 2] < 0.1, name
+        robot.until(lambda: far(goals[-1], robot.joints()) < 0.1, f"the end of {name}")  # noqa: B023 - called here
+        readings.append(robot.joints())
+        met = [any(far(goal, reading) < 0.1 for reading in readings[i:]) for i, goal in enumerate(goals)]
+        assert sum(met) > len(met) / 2, name
+
+
+def far(goal: Mapping[str, float], reading: Mapping[str, float]) -> float:
+    """Return the greatest distance of a joint of the head from its goal [rad or m]."""
+    return max(abs(goal[joint] - angle) for joint, angle in reading.items() if "head" in joint)
 
 
 def test_a_stop_ends_a_dance(robot: Driven, project: Project) -> None:
@@ -121,9 +136,8 @@ def test_two_robots(tmp_path: Path, project: Project, robot: Driven) -> None:
     other.answer("w", Wake())
     robot.answer("l", Look(0.5))
     other.answer("l", Look(-0.5))
-    robot.tick()
-    assert robot.joints()["head_yaw"] == pytest.approx(0.5, abs=0.06)
-    assert other.joints()["head_yaw"] == pytest.approx(-0.5, abs=0.06)
+    for each, angle in ((robot, 0.5), (other, -0.5)):
+        each.until(lambda each=each, angle=angle: turned(each) == pytest.approx(angle, abs=0.06), f"it is at {angle}")
     other.close()
     second.close()
 
