@@ -8,7 +8,7 @@ import pytest
 import lumen
 from lumen.bus import Bus
 from lumen.bus.memory import MemoryBus
-from lumen.cli import stop
+from lumen.cli import resume, stop
 from lumen.cli.main import main
 from lumen.cli.person import person
 from lumen.run.exhibition import Exhibition
@@ -62,6 +62,17 @@ def test_where_no_robot_answers_it_says_what_is_left(
     said = capsys.readouterr().err
     assert "the robot does not answer on `avatar.NAO.stop` and may still move: switch it off (NAO: hold the" in said
     until(lambda: told == [{"command": "stop"}])
+
+
+@pytest.mark.parametrize(
+    ("since", "shown"), [("just now", "just now"), (None, "None"), ("2026-05-20T10:00:00+00:00", "2026-05-")]
+)
+def test_what_is_no_time_is_shown_as_the_robot_told_it(
+    since: object, shown: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("sys.stdin", Terminal("no\n"))
+    assert not resume._sure({"stopped_by": "Ana", "since": since}, "the robot")
+    assert capsys.readouterr().out.startswith(f"Ana stopped the robot at {shown}")
 
 
 @pytest.mark.network

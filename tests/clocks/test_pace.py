@@ -155,8 +155,8 @@ def test_the_clock_of_another_process_follows_the_robots(speed: float, pace: flo
     assert clock.realtime == pytest.approx(pace, abs=0.02)
 
 
-def test_the_processes_of_an_exhibition_live_in_the_robots_time() -> None:
-    """The robot's process publishes the time; all other processes follow it."""
+def test_the_processes_of_an_exhibition_live_in_the_robots_time(capsys: pytest.CaptureFixture[str]) -> None:
+    """The robot's process publishes the time; all other processes follow it, and leave it to that one to say so."""
     exhibit, outside = project(), Outside()
     robots = World(outside, 1 / 0.8)
     robot = RecordingRobot(exhibit.body)
@@ -170,10 +170,12 @@ def test_the_processes_of_an_exhibition_live_in_the_robots_time() -> None:
     for presence in (body.presence, other.presence):
         presence._clock = outside
         presence.settle()
-    body.pace._monotonic = outside
+    body.pace._monotonic = other.pace._monotonic = outside
     for _ in range(1_000):
         body.tick()
         other.tick()
+    assert body.pace.slow
+    assert "real time" not in capsys.readouterr().out
     before = clock.now() - robots.clock.now()
     for _ in range(1_000):
         body.tick()

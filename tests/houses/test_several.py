@@ -98,6 +98,17 @@ def test_a_lost_robot_ends_alone(two: Path, monkeypatch: pytest.MonkeyPatch) -> 
         assert shows["ben"].now == pytest.approx(1.0)
 
 
+@pytest.mark.parametrize("leave", [True, False])
+def test_each_knows_whether_the_next_run_goes_on(two: Path, leave: bool) -> None:
+    with opened(two, story=None) as shows:
+        house = House({name: show.services for name, show in shows.items()})
+        house.start()
+        house.interrupt(2, leave=leave)
+        house.run(1.0)
+        assert house.over
+        assert [show.node.leaving for show in shows.values()] == [leave, leave]
+
+
 @pytest.mark.process
 def test_each_has_its_folder_and_its_journal(two: Path) -> None:
     homes = {}

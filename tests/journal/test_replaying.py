@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from copy import deepcopy
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from unittest.mock import Mock
 
 import pytest
 from hypothesis import HealthCheck, Phase, given, settings
@@ -17,6 +18,9 @@ from lumen.errors import LumenError
 from lumen.insight.replay.entries import JournalInput, entry_data, read_entry
 from lumen.language.causes import Cause
 from lumen.language.events import Event
+from lumen.run.rehearsal import RehearsalTrace
+from lumen.run.replaying.show import LEAD_IN, show
+from lumen.run.setup import set_up
 from lumen.statechart import Machine, Step, microstep, stepping
 from tests import ROOT
 from tests.guarded import PIPE, run_guarded
@@ -42,6 +46,21 @@ def quiet(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     logging.disable(logging.ERROR)
     yield
     logging.disable(logging.NOTSET)
+
+
+def test_runs_are_shown_at_their_pace_without_the_pauses_between_them(tmp_path: Path) -> None:
+    recorded = Recorded(tmp_path)
+    for _ in range(2):
+        recorded.begin(Machine.from_dict({"id": "m", "states": {"a": {"on": {"go": "b"}}, "b": {"on": {"go": "a"}}}}))
+        recorded.now += 3.0
+        recorded.happen(("go", None), 0)
+        recorded.end()
+    (project,) = recorded.bundles.values()
+    setup = set_up("recording", project, "max")
+    began, trace = setup.clock.now(), RehearsalTrace(setup.clock.now, lambda: project.machine, None)
+    show(recorded.entries(), Mock(machine=recorded.machine, project=lambda *_: project), setup, trace)
+    entered = [at - began for at, who, _ in trace.lines if who == "state"]
+    assert entered == pytest.approx([LEAD_IN, LEAD_IN + 3.05, 2 * LEAD_IN + 3.05, 2 * LEAD_IN + 6.1])
 
 
 def what(step: Step) -> tuple[object, ...]:

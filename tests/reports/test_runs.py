@@ -1,6 +1,7 @@
 """A run never ends with "All well" after a fall, a dropped event, an error of a `do`, or a missed goal of a joint."""
 
 import json
+import re
 from collections.abc import Sequence
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
@@ -33,7 +34,7 @@ from lumen.run.troubles import RunTrouble
 from lumen.statechart import Step
 from tests import exhibits
 from tests.tables import for_each
-from tests.waiting import HANG, until
+from tests.waiting import HANG, Collector, until
 
 INPUTS = Path(__file__).parent / "inputs" / "runs"
 TOUCH = "title: A hand\nsteps:\n" + "  - touch: MiddleTactil\n  - wait: 1s\n" * 5
@@ -137,6 +138,7 @@ def test_an_error_that_ended_a_do_fails_a_story_that_does_not_expect_it(
     assert run(root, "--story", "visitor") == code
     told = capsys.readouterr().out
     assert ("All well" in told) == (code == 0)
+    assert re.search(r"^[A-Z][a-z ]+: 0:\d\d of simulated time in \d+ s \(\d+\.\d × real time\)\.$", told, re.MULTILINE)
     assert ("an error ended the `do` of `a`: " in told) == (code == 1)
     project = lumen.load(root)
     assert (rehearse(project, project.stories["visitor"]).failed is not None) == (code == 1)
@@ -239,6 +241,19 @@ def test_a_story_in_its_own_process_receives_troubles() -> None:
 
     until(told, HANG)
     assert heard == [trouble]
+
+
+def test_the_requests_of_a_story_in_its_own_process_name_who_makes_them() -> None:
+    bus, project, asked = MemoryBus(), exhibits.project(), Collector()
+    bus.subscribe("lumen.NAO.operator.request", asked)
+    subscriber = TraceSubscriber(project, bus, lambda _event: None)
+    assert subscriber.press("Dance", "a story") == subscriber.approve("a story", go=True) == ""
+    subscriber.set_autonomy("ask", "a story")
+    assert asked.bodies == [
+        {"ask": "press", "button": "Dance", "by": "a story"},
+        {"ask": "approve", "id": "", "go": True, "by": "a story"},
+        {"ask": "autonomy", "level": "ask", "by": "a story"},
+    ]
 
 
 WAKES = "initial: a\nentry: {wake: true}\nstates: {a: {do: [{posture: Stand}], on: {stop: b}}, b: {}}\n"
