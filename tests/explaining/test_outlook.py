@@ -61,7 +61,7 @@ def test_enough_was_tried() -> None:
 def test_why_is_said_in_words() -> None:
     machine = Machine.from_dict(
         {
-            "context": {"n": 1},
+            "context": {"n": 1, "who": "Ada"},
             "on": {"go": {}},
             "states": {
                 "a": {
@@ -70,6 +70,8 @@ def test_why_is_said_in_words() -> None:
                         "more": [{"target": "b", "guard": "context.n > 3 && event.data.k == 1"}, {"target": "b"}],
                         "said": {"target": "b", "guard": "context.n == 1 && event.data.k == 1"},
                         "told": {"target": "b", "guard": "context.n == 1"},
+                        "asked": {"target": "b", "guard": "context.n > 3 && context.n > context.who"},
+                        "shown": {"target": "b", "guard": "false && context.n > context.who"},
                     },
                     "after": {"5s": "b"},
                     "always": {"target": "b", "guard": "context.n > 8"},
@@ -81,6 +83,8 @@ def test_why_is_said_in_words() -> None:
     told = {(w.transition.awaited_time or w.transition.event, w.open): w for w in ways(machine)}
     assert told["more", False].why == "context.n > 3 is false: context.n is 1"
     assert told["more", True].why == "when more comes"
+    assert told["asked", False].why == "context.n > 3 is false: context.n is 1", "only the first part that is false"
+    assert told["shown", False].why == "false is false"
     assert told["said", True].guard
     assert told["said", True].guard.holds is None
     assert told["said", True].guard.values == {"context.n": 1}

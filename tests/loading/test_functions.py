@@ -121,6 +121,14 @@ def test_lumen_test_tries_the_examples(root: Path, capsys: pytest.CaptureFixture
     ]
 
 
+def test_examples_are_counted_with_the_stories(root: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (root / "behaviors/stories").mkdir()
+    story = root / "behaviors/stories/nobody.yaml"
+    story.write_text("steps: [{expect: {state: waiting}}]\n")
+    assert main(["test", str(root)]) == 1
+    assert capsys.readouterr().out.splitlines()[-1].startswith("1 story and 3 examples, 1 failed: ")
+
+
 def test_examples_for_other_programs(root: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["test", str(root), "--format", "json"]) == 1
     found = json.loads(capsys.readouterr().out)["examples"]

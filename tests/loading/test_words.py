@@ -12,6 +12,7 @@ from lumen.features.formats_charts.scxml import read_scxml, write_scxml
 from lumen.features.formats_charts.xstate import read_xstate, write_xstate
 from lumen.insight.changes import changes
 from lumen.insight.changes.change import Risk
+from lumen.insight.changes.machines import machine_changes
 from lumen.language.diagnostics import has_errors
 from lumen.lint import check_files
 from lumen.project import load
@@ -96,6 +97,26 @@ def test_a_change_of_words_is_seen_at_once_and_told_once_in_their_file() -> None
     (change,) = changes(before, after)
     assert (change.file, change.risk) == (FAQ, Risk.COSMETIC)
     assert change.sentence == "`faq` now answers “Five kilograms.”"
+
+
+@pytest.mark.parametrize(
+    ("words", "others", "told"),
+    [
+        ({"lists": {"rooms": [{"of": "us"}]}}, {"lists": {"rooms": [{"of": "all"}]}}, "list `rooms` changed"),
+        ({"phrases": {"hi": {"en": ["hi"]}}}, {"phrases": {"hi": {"en": ["hello"]}}}, "phrases `hi`"),
+        (
+            {"phrases": {"hi": {"en": ["hi"]}}},
+            {"phrases": {"hi": {"en": ["hi"]}, "ho": {"en": ["ho"]}}},
+            "phrases `ho`",
+        ),
+    ],
+)
+def test_a_change_of_what_a_words_file_has_names_that_file(words: Any, others: Any, told: str) -> None:
+    data = {"id": "m", "words": "faq", "states": {"a": {}}}
+    old, new = (Machine.from_dict(data, words={"faq": each}) for each in (words, others))
+    (change,) = machine_changes("m", old, new)
+    assert change.sentence.startswith(told)
+    assert change.file == FAQ
 
 
 def test_the_shipped_answers_stand_in_words() -> None:
