@@ -16,6 +16,7 @@ from lumen.bus.local import LocalAddress, LocalBusClient, LocalBusServer
 from lumen.bus.local.frames import frame, framed
 from lumen.bus.local.server import ClientConnection
 from lumen.bus.memory import MemoryBus
+from lumen.language.causes import MessageOrigin
 from tests.waiting import HANG, Collector, finished, until
 
 
@@ -133,6 +134,16 @@ def test_nonsense_of_somebody_who_knows_the_key_costs_only_them(opened: Opened, 
         client.bus.subscribe("lumen.a", Collector())
         other.bus._put(frame(*words))
         client.still_hears()
+
+
+def test_a_message_of_a_client_keeps_its_origin(opened: Opened) -> None:
+    seen = Collector()
+    opened.bus.subscribe("lumen.a", seen)
+    with Client(opened) as client:
+        client.bus.publish("lumen.a", 1, origin=MessageOrigin("a-7", "somebody", 5.0, "tour.c1"))
+        seen.wait(1)
+    (message,) = seen.messages
+    assert (message.id, message.sender, message.time, message.cause) == ("a-7", "somebody", 5.0, "tour.c1")
 
 
 def test_a_fault_of_ours_in_handling_a_frame_costs_one_connection(

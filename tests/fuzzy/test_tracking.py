@@ -2,15 +2,22 @@
 
 from dataclasses import replace
 from math import degrees, hypot, pi, radians
+from typing import Any
+from unittest.mock import Mock
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from lumen.bus.memory import MemoryBus
 from lumen.fuzzy import Controller
+from lumen.language.commands import Track
 from lumen.motion.limits import coupled_range
 from lumen.motion.projection import Vector3, centring, seen
 from lumen.motion.tracking import Tracker
+from lumen.ports import Aim
+from lumen.run.tracking import LocalTracking
+from tests import exhibits
 from tests.fuzzy.closed_loop import off_by, run
 from tests.fuzzy.nao import COUPLED, HEAD, TOP
 from tests.tables import for_each
@@ -34,6 +41,19 @@ def test_a_face_on_the_left_turns_the_head_left_and_one_above_raises_it(plain: T
     plain.pose(1.0, HERE)
     target = plain.see({"x": 0, "y": 0}, 1.0)
     assert target == pytest.approx({"HeadYaw": radians(1.5 * 7.0884), "HeadPitch": -radians(1.5 * 2.4378)}, abs=1e-5)
+
+
+def test_a_controller_reads_its_messages_from_the_start(head: Controller) -> None:
+    started: list[Any] = []
+    bus, robot = MemoryBus(), Mock(start=lambda _, command: started.append(command))
+    tracking = LocalTracking(exhibits.project(controllers={"head": head}), robot, bus)
+    tracking.switch(Track("head"))
+    bus.publish("avatar.NAO.data.joint", {"name": [*HERE], "angle": [*HERE.values()], "time": 1.0})
+    bus.publish("lumen.visual.face.detection", {"x": 0, "y": 120, "time": 1.0})
+    tracking.tick(1.0)
+    (aim,) = started
+    assert isinstance(aim, Aim)
+    assert aim.angles["HeadYaw"] > 0.0
 
 
 def test_the_turn_counts_from_the_pose_at_capture(plain: Tracker) -> None:

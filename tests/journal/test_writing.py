@@ -105,6 +105,22 @@ def test_a_slow_disk_keeps_nobody_waiting_and_what_does_not_fit_is_a_gap(
     assert not [row for row in again if row.differs or row.unknown]
 
 
+def test_a_rehearsed_run_waits_for_a_slow_disk(disk: Disk, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(journal_writer, "MAX_WAITING", 50)
+    writer, made = JournalWriter(disk, rehearsed=True), steps(200)
+    flush = writer.flush
+    monkeypatch.setattr(writer, "flush", lambda: disk.free.set() or flush(HANG))
+    disk.free.clear()
+    writer.start()
+    writer.jumped("start", PROJECT, initial(MACHINE).snapshot)
+    tell(writer, made)
+    disk.free.set()
+    writer.close()
+    jumps = {entry.kind for entry in read(disk) if isinstance(entry, JournalJump)}
+    assert "gap" not in jumps
+    assert len([entry for entry in read(disk) if not isinstance(entry, JournalJump)]) == len(made)
+
+
 def test_a_full_disk_is_told_once_and_costs_entries(
     disk: Disk, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:

@@ -159,6 +159,23 @@ def test_an_exhibition_continues_without_a_part_that_fails(
     assert "Traceback" in caplog.text
 
 
+def test_the_first_interrupt_reaches_a_part(installed: Installed, minimal: Path) -> None:
+    handler = "def interrupt(self):\n        self.steps = -1\n        return True"
+    code = COUNTER.format(make="return Counter()").replace("def make", f"    {handler}\n\ndef make")
+    installed.write("lumen-counter", MANIFEST, counting_part=code)
+    project, stopped = lumen.load(minimal), list[str]()
+    with Exhibition(Plan(project, set_up("recording", project, "max"))) as exhibition:
+        exhibition.services.add(0, Witness(stopped))
+        exhibition.start()
+        counter = exhibition.services[resolve("counting_part:Counter")]
+        assert counter.steps >= 0
+        exhibition.node.interrupt()
+        exhibition.tick()
+        assert counter.steps == -1
+        assert not exhibition.node.over
+    assert stopped == []
+
+
 class Witness(Part):
     """A part that keeps which other parts were stopped."""
 
