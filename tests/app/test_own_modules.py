@@ -6,6 +6,7 @@ import shutil
 import sys
 from collections.abc import Iterator
 from pathlib import Path
+from unittest.mock import Mock
 
 import pytest
 
@@ -18,17 +19,19 @@ from lumen.language.events import Event
 from lumen.language.modules import ModuleSettings
 from lumen.language.projects import Project
 from lumen.project import load
+from lumen.run import joining
 from lumen.run.claiming import refuse_rivals
+from lumen.run.joining import JoinedModule
 from lumen.run.parts.own_module import OwnModulePart
 from lumen.run.plan import Plan
-from lumen.run.presence import PRESENCE_ROUTE, Presence
+from lumen.run.presence import PRESENCE_PERIOD, PRESENCE_ROUTE, Presence
 from lumen.run.services import Services
 from lumen.upkeep.supervised_process import FIRST_PAUSE, MAX_LINES, SupervisedProcess
 from tests import ROOT
 from tests.copying import copied_project
 from tests.guarded import PIPE, STDOUT, Guarded
 from tests.rabbitmq import RabbitMQ
-from tests.waiting import until
+from tests.waiting import Collector, until
 
 pytestmark = pytest.mark.process
 
@@ -274,6 +277,23 @@ def test_a_program_that_hangs_is_killed_and_started_again(project: Project, time
     second = int(next(line for line in reversed(watched.lines) if line.isdecimal()))
     watched.part.close()
     until(lambda: not alive(second))
+
+
+# The program
+
+
+def test_a_program_shows_that_it_lives_once_per_period(monkeypatch: pytest.MonkeyPatch, time: Time) -> None:
+    monkeypatch.setattr(joining, "time", Mock(monotonic=time))
+    monkeypatch.setattr(joining, "signal", Mock())
+    bus, seen = MemoryBus("joined"), Collector()
+    bus.subscribe("lumen.NAO.presence", seen)
+    with JoinedModule("mood", "NAO", MemoryBus("joined"), None) as module:
+        module.alive()
+        module.alive()
+        time.now += PRESENCE_PERIOD
+        assert module.wait(0.0)
+    assert [body["state"] for body in seen.bodies] == ["here", "here", "leaves"]
+    assert {tuple(body["parts"]) for body in seen.bodies} == {("mood",)}
 
 
 # The exhibition

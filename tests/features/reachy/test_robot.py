@@ -6,13 +6,14 @@ from pathlib import Path
 
 import pytest
 
-from lumen.errors import RobotError, UsageError
+from lumen.errors import RobotError, RobotModelError, UsageError
 from lumen.features.reachy.daemon_api import DaemonAddress
 from lumen.features.reachy.pose import BODY, JOINTS
 from lumen.features.reachy.robot import ReachyRobot
 from lumen.language.commands import Leds, Look, PlaySound, Posture, Rest, Say, Stop, Volume, Wake, Walk
 from lumen.language.projects import Project
-from lumen.ports import Aim, Live, Perform, Record, RobotCommand, Sense
+from lumen.ports import Aim, Joints, Live, Perform, Record, RobotCommand, Sense
+from tests import exhibits
 from tests.features.reachy.driving import Driven
 from tests.features.reachy.fake import ASLEEP, INIT, FakeDaemon
 from tests.tables import for_each
@@ -187,6 +188,17 @@ def test_senses_are_those_of_its_body(awake: Driven, project: Project) -> None:
     assert all(awake.robot.read(sense) is None for sense in Sense if sense is not Sense.JOINT)
 
 
+def test_the_joints_are_stiff_until_it_sleeps(awake: Driven) -> None:
+    def stiffness() -> set[float]:
+        reading = awake.robot.read(Sense.JOINT)
+        assert isinstance(reading, Joints)
+        return set(reading.stiffness)
+
+    assert stiffness() == {1.0}
+    assert awake.answer("r", Rest()).name == "done.command.r"
+    assert stiffness() == {0.0}
+
+
 @for_each(
     ("url", "words"),
     [
@@ -212,6 +224,12 @@ def test_without_a_daemon_there_is_an_error(project: Project) -> None:
     gone.close()
     with pytest.raises(RobotError, match=f"the daemon at http://127.0.0.1:{gone.port} does not answer"):
         ReachyRobot(project.body, gone.url, time.monotonic)
+
+
+def test_another_robot_is_refused_before_anything_moves(daemon: FakeDaemon) -> None:
+    with pytest.raises(RobotModelError, match="NAO is no Reachy Mini: write `model: reachy_mini` under `robot`"):
+        ReachyRobot(exhibits.BODY, daemon.url, time.monotonic)
+    assert daemon.targets == []
 
 
 def test_an_unknown_voice_is_said_so(project: Project, daemon: FakeDaemon) -> None:

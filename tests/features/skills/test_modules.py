@@ -7,13 +7,13 @@ from typing import Any
 import pytest
 
 from lumen.bus import connect
-from lumen.features.skills import module_call
+from lumen.features.skills import module_call, performer
 from lumen.ports import Bus, Message
 from lumen.project import load
 from tests.features.skills.changing import project_in
 from tests.features.skills.stage import Stage, stage
 from tests.rabbitmq import RabbitMQ
-from tests.waiting import until
+from tests.waiting import HANG, until
 
 MANIFEST = "in: {required: [litres], properties: {litres: {type: number}}}\nperformed-by: {module: pump}\n"
 
@@ -46,6 +46,15 @@ def test_a_module_is_called_and_its_answer_is_the_result(pumping: Stage) -> None
     assert pumping.told == ["50% half"]
     (order,) = pump.heard
     assert (order["skill"], order["arguments"]) == ("pump", {"litres": 2})
+
+
+def test_an_answer_of_a_module_wakes_the_call(pumping: Stage, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(performer, "LOOK", 10 * HANG)
+    pump = Pump(pumping.bus, {"progress": 0.5, "text": "half"})
+    id = pumping.start("pump", litres=1)
+    pumping.until(lambda: pumping.told == ["50% half"])
+    pumping.bus.publish("lumen.NAO.skill_answer", {"call": pump.heard[0]["call"], "result": {}})
+    assert pumping.end(id) == {}
 
 
 def test_a_module_waits_by_the_robots_clock(pumping: Stage) -> None:

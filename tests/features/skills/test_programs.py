@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 
+from lumen.features.skills import workshop
 from lumen.features.skills.process import SkillProcess
 from lumen.language.commands import Rest, Stop
 from lumen.project import load
@@ -61,6 +62,15 @@ def test_one_process_performs_call_after_call_and_calls_at_once_have_several(act
     for id in [acting.start("act"), acting.start("act")]:
         acting.end(id)
     assert len(set(acting.told)) == 2
+
+
+def test_one_call_too_many_at_once_is_refused(acting: Stage, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(workshop, "MAX_PROCESSES", 2)
+    code(acting, "print('ready')\ncall.wait(60)")
+    for count in (1, 2):
+        acting.start("act")
+        acting.until(lambda count=count: acting.told == ["ready"] * count)
+    assert acting.perform("act") == "2 calls of `act` are under way already"
 
 
 @pytest.mark.parametrize(
