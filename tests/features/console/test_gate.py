@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from lumen.errors import UsageError
-from lumen.features.console.access import Access, TooFastError
+from lumen.features.console.access import Access, TooFastError, pins_from
 from lumen.features.console.gate import MAX_BODY
 from lumen.features.console.people import Person, Role
 from lumen.features.console.proxies import TrustedProxies
@@ -174,6 +174,27 @@ def test_rest_is_never_rationed(open_to_all: Browser) -> None:
 def test_nobody_else_is_let_in_without_pins(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match="no PINs are set"):
         Console(lambda: pytest.fail("no bus is wanted"), tmp_path, "0.0.0.0", 0)
+
+
+@for_each(
+    ("pins", "reason"),
+    [
+        ({}, r"the PIN for show is missing: set the environment variable \$SHOW"),
+        ({"SHOW": "show-1", "OPERATOR": "123"}, r"the PIN for operator, in \$OPERATOR, is too short"),
+        (
+            {"SHOW": "show-1", "OPERATOR": "show-1"},
+            r"the PIN for operator, in \$OPERATOR, is also the PIN of another role",
+        ),
+    ],
+)
+def test_each_role_needs_a_pin_of_its_own(pins: dict[str, str], reason: str) -> None:
+    said = {"show": "$SHOW", "operator": "$OPERATOR"}
+    assert pins_from(said, {"SHOW": "show-1", "OPERATOR": "operator-2"}) == {
+        Role.SHOW: "show-1",
+        Role.OPERATOR: "operator-2",
+    }
+    with pytest.raises(UsageError, match=reason):
+        pins_from(said, pins)
 
 
 def test_a_port_that_is_taken_is_said_in_a_line(open_to_all: Browser, tmp_path: Path) -> None:

@@ -100,6 +100,12 @@ def test_what_is_a_saying_by_now_leaves_the_list(tmp_path: Path) -> None:
     assert [one.text for one in days.told([told], date(1970, 1, 1)).said] == ["I'm Ani", "jump"]
 
 
+def test_where_the_files_of_that_day_are_gone_those_of_now_are_read(tmp_path: Path) -> None:
+    told = [{**entry_data(one), "position": one.position} for one in entries(guide(), "I'm Ani", "jump")]
+    found = KeptDays(guide_in(tmp_path)).told([told], date(1970, 1, 1))
+    assert [(one.text, one.row) for one in found.said] == [("I'm Ani", "my_name"), ("jump", "else")]
+
+
 @pytest.fixture(scope="module")
 def hosted(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Hosted]:
     with closing(Hosted(guide_in(tmp_path_factory.mktemp("guide")))) as one:

@@ -90,6 +90,7 @@ def test_sentences_are_found_with_what_was_filled_in(tmp_path: Path) -> None:
     assert place(root, "Please come in.")["texts"] == {"en": "Please come in.", "id": "Mari masuk."}
     assert place(root, f"{TOWER} visitors ever since.")["line"] == 28
     assert place(root, "Karena kami suka.", language="id")["file"] == "knowledge/why.yaml"
+    assert place(root, "Karena kami suka.", language="en")["file"] == "knowledge/why.yaml", "it is in no English text"
     assert places(root, "", SaidSentence("Nobody wrote this.")) == []
 
 

@@ -1,15 +1,22 @@
 """Pages that listen: many of them, one that never reads, and one that was away for long."""
 
+import asyncio
 import socket
+from types import SimpleNamespace
+from typing import cast
 
+import orjson
 import pytest
 
 from lumen.features.console import gate
 from lumen.features.console.entry_clock import ToldPage
 from lumen.features.console.entry_ring import EntryRing
-from lumen.features.console.streams import positions_in
+from lumen.features.console.known_robot import KnownRobot
+from lumen.features.console.streams import Listener, Streams, positions_in
+from lumen.features.console.watch import Changes, Watch
 from tests.features.console.conftest import Hosted
 from tests.features.console.pages import Browser, Served, Stream
+from tests.tables import for_each
 from tests.waiting import until
 
 
@@ -44,6 +51,22 @@ def test_a_page_that_begins_receives_what_has_a_text_however_many_faces_came_aft
     assert [entry.position for entry in ring.recent(100)] == [3, 5, 700, 1_499]
     assert [entry.position for entry in ring.recent(2)] == [700, 1_499]
     assert EntryRing("NAO").recent(100) == []
+
+
+@for_each("after", range(-1, 5))
+def test_a_page_that_has_some_entries_receives_those_after_them_and_the_robot(after: int) -> None:
+    view = KnownRobot("NAO")
+    view.entries.begin(-1)
+    view.entries.add(ToldPage([{"position": n, "heard": "touched", "at": n / 10} for n in range(5)]))
+
+    async def events() -> list[bytes]:
+        watch = SimpleNamespace(robots={"NAO": view}, lookers=0, changes=Changes())
+        listener = Listener("NAO", {"NAO": after}, full=True, once=True)
+        return [block async for block in Streams(cast(Watch, watch)).events(listener)]
+
+    _, *entries, now = asyncio.run(events())
+    assert [int(block.split(b"\n")[1].removeprefix(b"id: ")) for block in entries] == [*range(after + 1, 5)]
+    assert now == b"event: now\ndata: " + orjson.dumps(view.to_json(full=True)) + b"\n\n"
 
 
 def test_many_pages_hear_the_same(browser: Browser, hosted: Hosted) -> None:
