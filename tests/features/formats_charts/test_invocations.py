@@ -58,6 +58,16 @@ def test_scxml_names_the_file(host: Machine) -> None:
     assert again == text
 
 
+def test_an_invoke_whose_input_scxml_can_not_express_is_left_out() -> None:
+    invoke = {"behavior": "quiz", "input": {"who": "context"}}
+    host = Machine.from_dict({"states": {"one": {"invoke": invoke}}}, behaviors={"quiz": QUIZ})
+    text, said = write_scxml(host, dotted("host"))
+    assert "<invoke" not in text
+    assert [d.message for d in said] == [
+        "`invoke` of `quiz` is left out: `context` as a whole has no counterpart in ECMAScript"
+    ]
+
+
 def test_xstate_names_the_actor(host: Machine) -> None:
     text, said = write_xstate(host, dotted("host"))
     rows = json.loads(text)["states"]["one"]["invoke"]

@@ -1,6 +1,7 @@
 """The import of each part of SCXML, and the reports for parts that Lumen does not support."""
 
 from typing import Any
+from xml.sax.saxutils import escape
 
 from lumen.features.formats_charts.scxml import read_scxml, write_scxml
 from lumen.project.formats.conversion_findings import dotted
@@ -165,6 +166,23 @@ def test_lists_are_concatenated_and_nothing_else_is(expression: str, value: str 
     data, said = read(f'{LISTS}<state id="a"><onentry>\n<assign location="n" expr="{expression}"/></onentry></state>')
     assert data["states"]["a"] == ({} if value is None else {"entry": [{"assign": {"n": value}}]})
     assert said == ([] if value else ["3: `<assign>`: `.concat()` is called on a value that is not a list"])
+
+
+@for_each(
+    ("expression", "value"),
+    [
+        ("x || 5", "context.x != 0 ? context.x : 5"),
+        ("x && 5", "context.x != 0 ? 5 : context.x"),
+        ("x || t || 5", "context.x != 0 ? context.x : context.t != '' ? context.t : 5"),
+        ("x > 1 || t == 'a'", "context.x > 1 || context.t == 'a'"),
+    ],
+)
+def test_the_value_of_or_and_and_is_that_of_an_operand(expression: str, value: str) -> None:
+    data = '<datamodel><data id="x" expr="0"/><data id="t" expr="\'a\'"/><data id="n"/></datamodel>'
+    written = f'<assign location="n" expr="{escape(expression)}"/>'
+    found, said = read(f'{data}<state id="a"><onentry>{written}</onentry></state>')
+    assert found["states"]["a"] == {"entry": [{"assign": {"n": value}}]}
+    assert said == []
 
 
 def test_assignments_to_a_part() -> None:

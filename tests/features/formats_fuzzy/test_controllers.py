@@ -230,6 +230,12 @@ def test_what_an_engine_can_not_bring_is_listed_at_its_words() -> None:
     assert data["rules"] == ["if a is low then b is few with 0.5"]
 
 
+def test_rule_blocks_of_an_engine_have_names_that_are_told_apart() -> None:
+    blocks = "".join(f"RuleBlock: {name}\n  rule: if a is low then b is few\n" for name in ("near by", "near,by", ""))
+    data, _ = said(read_fll, FLL.partition("RuleBlock: first")[0] + blocks)
+    assert list(data["blocks"]) == ["near_by", "near_by_", "block3"]
+
+
 @pytest.mark.parametrize(("read", "text"), [(read_fis, FIS), (read_fcl, FCL), (read_fll, FLL)])
 def test_import_export_import_is_a_fixed_point(read: Read, text: str) -> None:
     data = read("file", text.encode(), "file")[0]
