@@ -6,6 +6,7 @@ from typing import Any
 
 import pytest
 
+from lumen.features.answers.chat import Chat, Piece
 from lumen.features.answers.sentence_check import refusal, sentences
 from tests.features.answers.conftest import LONGEST, Desk
 from tests.features.answers.fake_model import Handler, Reply, calls, fake_model, says
@@ -91,6 +92,21 @@ def writes(data: bytes, kind: str = "text/event-stream") -> Reply:
 
 def vanishes(handler: Handler, _: Any) -> None:
     handler.connection.close()
+
+
+def test_only_the_data_of_a_stream_is_read_wherever_it_is_cut() -> None:
+    lines = [
+        ": ping",
+        "",
+        "event: message",
+        'data: {"choices":\r',
+        'data:[{"delta": {"content": "It is ü."}}]}\r',
+        "id: 1",
+    ]
+    whole = "\n".join([*lines, "", "data: [DONE]", "", "data: {oops"]).encode()
+    for size in (1, 7, len(whole)):
+        pieces = (whole[at : at + size] for at in range(0, len(whole), size))
+        assert [*Chat().read("text/event-stream", pieces)] == [Piece("It is ü."), Piece(ended=True)]
 
 
 FAULTS: list[tuple[str, Reply, list[str], str]] = [

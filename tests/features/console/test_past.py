@@ -1,15 +1,23 @@
 """Days, entries, why and files, of an exhibition with visitors."""
 
+import asyncio
 from contextlib import closing
 from datetime import date
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 
+from lumen.features.console.known_robot import KnownRobot
+from lumen.features.console.past import Past
+from lumen.features.console.requests import DeniedError
+from lumen.features.console.sentences import Sentences
 from lumen.lint import check_files
 from lumen.project.files import read_files
 from tests.features.console.conftest import Hosted, Shared
 from tests.features.console.pages import Browser, Served, Stream
+from tests.tables import for_each
 from tests.waiting import until
 
 
@@ -58,6 +66,25 @@ def test_a_question_becomes_a_passage_of_the_project(copy: Path) -> None:
         refused = served.browser.post("/api/passages", {**passage, "answer": ""})
         assert (refused.status, "`answer`" in refused.data["reason"]) == (400, True)
         assert served.browser.get("/api/day").data["numbers"]["unanswered"] == []
+
+
+@for_each("path", ["chart", "skills", "passages", "sayings", "stories", "sentence"])
+def test_files_of_a_robot_on_another_machine_are_neither_read_nor_written(path: str, tmp_path: Path) -> None:
+    posted = {"question": "what is love", "answer": "A question.", "language": "en", "position": 1, "write": True}
+
+    async def data(request: Any) -> dict[str, Any]:
+        return posted
+
+    keys = SimpleNamespace(is_ours=lambda robot: robot != "NAO7")
+    here = {"watch": SimpleNamespace(keys=keys), "person": lambda *_: None, "posted": data}
+    reception: Any = SimpleNamespace(**here, robot=lambda name: KnownRobot("NAO7"))
+    jobs: Any = SimpleNamespace(root=tmp_path)
+    past = Past(reception, jobs)
+    for route in (*past.routes, *Sentences(reception, jobs, past).routes):
+        if route.path == f"/api/{path}":
+            with pytest.raises(DeniedError, match="this robot's files are on another machine"):
+                asyncio.run(route.endpoint(SimpleNamespace(query_params={})))
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_a_visit_becomes_a_story_without_the_name(copy: Path) -> None:

@@ -18,9 +18,11 @@ from pythonosc.udp_client import SimpleUDPClient
 from lumen.bus import connect
 from lumen.features.show import health, mqtt
 from lumen.features.show.module import ShowControl
+from lumen.features.show.osc import OscDevice
 from lumen.features.show.settings import AddressMapping, DmxLink, MqttLink, OscLink, Show, TopicMapping
 from lumen.language.projects import Project
 from lumen.language.routes import Carried, Direction, Route
+from lumen.project.message_fields import message_fields
 from lumen.upkeep.drops import MAX_KEYS, TELL_PERIOD, Drops
 from tests.features.conftest import Stand
 from tests.rabbitmq import RabbitMQ
@@ -328,6 +330,22 @@ def test_a_sound_desk_by_osc(desk: tuple[int, list[Any]], museum: Callable[..., 
     assert pressed.wait(2)[1] == {"number": 4}
     assert "messages on `lamp (OSC)` are dropped: the body has no `on`" in here.told
     assert any("127.0.0.2 is not 127.0.0.1" in line or "no route has the address" in line for line in here.told)
+
+
+def test_an_address_without_a_route_loses_no_other_message_of_its_bundle() -> None:
+    link = OscLink("127.0.0.1", 9000, 9001, {"button": AddressMapping("/b")})
+    told, taken = list[str](), list[Any]()
+
+    def deliver(route: str, source: str, body: Callable[[], Any]) -> None:
+        taken.append((route, source, body()))
+
+    fields = {"button": [*message_fields(MESSAGES["button"]).values()]}
+    well = health.LinkHealth("the desk", told.append, lambda: None)
+    device = OscDevice(link, fields, ["button"], deliver, Drops(told.append), well)
+    parts = [b"/nobody\0,i\0\0\0\0\0\1", b"/b\0\0,i\0\0\0\0\0\3"]
+    device._take(b"#bundle\0" + bytes(7) + b"\1" + b"".join(len(part).to_bytes(4) + part for part in parts))
+    assert taken == [("button", "/b (OSC)", {"number": 3})]
+    assert told == ["messages on `the port 9001 (OSC)` are dropped: no route has the address /nobody"]
 
 
 def _moved(sender: SimpleUDPClient, moved: Collector) -> bool:
