@@ -61,6 +61,19 @@ def test_the_error_is_reported_at_its_place_with_a_correction(name: str, expecte
     assert_told(found(name, (INPUTS / name).read_bytes()), expected)
 
 
+@for_each(
+    ("phrases", "message"),
+    [
+        ("|\n      - dance\n      - dance for me", "this is one phrase: a line break does not separate phrases"),
+        ('"dance; dance for me"', "this is one phrase: `;` does not separate phrases"),
+        ('"dance, dance for me"', "this is one phrase: `,` does not separate phrases"),
+    ],
+)
+def test_the_sign_between_the_phrases_of_one_text_is_named(phrases: str, message: str) -> None:
+    content = f"phrases:\n  dance:\n    en: {phrases}\n{STATES}".encode()
+    assert [d.message for d in found("tour.yaml", content) if d.code == "foreign-pattern"] == [message]
+
+
 BREAKS = {"lf": "\n", "crlf": "\r\n", "cr": "\r"}
 NO_BREAKS = {"next line": "\x85", "line separator": "\u2028", "paragraph separator": "\u2029"}
 

@@ -6,6 +6,7 @@ from lumen.errors import UsageError
 from lumen.features.editor.analysis import Analysis
 from lumen.features.editor.completion import complete
 from lumen.features.editor.hover import hover
+from lumen.features.editor.mending import mended
 from lumen.features.editor.renaming import renamable, rename
 from lumen.features.editor.symbols import Symbol, symbols
 from lumen.project.files import read_files
@@ -57,6 +58,13 @@ def test_the_rest_of_the_file_is_known(how: str) -> None:
     names = {item.text for item in complete(analysis, *at(analysis, TOUR, "battery.low: {target: |battery_low"))}
     assert {"fallen", "watching"} <= names
     assert "goodbye" in {item.text for item in complete(analysis, *at(analysis, VISITOR, "expect: {state: |greet"))}
+
+
+def test_half_of_a_character_does_not_hide_the_rest() -> None:
+    """JSON can contain half of a surrogate pair, which UTF-8 can't."""
+    found = mended(TOUR, "a: \ud800\nb: [\nc: 2\n")
+    assert found is not None
+    assert found.text == "\n\nc: 2\n"
 
 
 @for_each("how", BREAKS)

@@ -13,6 +13,7 @@ from lumen.features.editor.analysis import Analysis, Judgement
 from lumen.features.editor.completion import complete
 from lumen.features.editor.definitions import definitions, uses
 from lumen.features.editor.hover import hover
+from lumen.features.editor.locating import NameInText, in_expression
 from lumen.features.editor.names import NameKind
 from lumen.features.editor.renaming import applied, refuse_harm, renamable, rename
 from lumen.features.editor.requests import changes
@@ -292,6 +293,14 @@ def test_words_stand_where_they_say() -> None:
     assert len(named) > 1_500
     for word in named:
         assert lines[word.place.file][word.place.line - 1][word.place.column - 1 :].startswith(word.text)
+
+
+def test_a_call_with_a_computed_name_has_no_place_of_the_name() -> None:
+    found = in_expression("heard(event.data.result, context.topic) && heard(event.data.result, 'dance') && In()")
+    assert list(found) == [
+        NameInText(NameKind.CONTEXT, "topic", 33),
+        NameInText(NameKind.PHRASE, "dance", 69),
+    ]
 
 
 @pytest.mark.slow

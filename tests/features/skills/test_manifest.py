@@ -113,6 +113,26 @@ def test_lint_reports_what_follows_from_the_manifest(
     assert any(one.startswith(finding) for one in found(project_in(tmp_path, changes)))
 
 
+@for_each(
+    ("old", "new", "finding"),
+    [
+        (
+            "{python: skills/spray.py}",
+            "{command: [node, skills/spray.mjs]}",
+            "10:32 skill-program | there is no file skills/spray.mjs | write this file",
+        ),
+        (
+            "{enum: [left, right], default: left}",
+            '{$ref: "#/$defs/side"}',
+            "6:14 skill-schema | a skill can't use `$ref`: its schema becomes a part of another one"
+            " | write the definition in its place",
+        ),
+    ],
+)
+def test_lint_marks_the_word_of_a_manifest(tmp_path: Path, old: str, new: str, finding: str) -> None:
+    assert found(project_in(tmp_path, {MANIFEST: (old, new)})) == [f"{MANIFEST}:{finding}"]
+
+
 def test_a_broken_manifest_is_the_only_finding(tmp_path: Path) -> None:
     root = project_in(tmp_path, {MANIFEST: ("takes: ", "take: ")})
     assert [(each.code, each.place.file, each.place.line) for each in lint(root)] == [("unknown-key", MANIFEST, 8)]
