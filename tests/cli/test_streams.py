@@ -10,6 +10,7 @@ import pytest
 import lumen
 from lumen.cli.agreeing import agrees
 from lumen.cli.main import main
+from lumen.cli.printing import show
 from lumen.cli.transcript import Transcript
 from lumen.errors import UsageError
 from tests import ROOT
@@ -76,6 +77,14 @@ def test_a_full_disk_is_one_line(words: tuple[str, ...]) -> None:
     assert code == 2
     assert said.count("\n") == 1
     assert "no space left on device" in said
+
+
+def test_findings_that_nobody_reads_are_lost_and_a_full_disk_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys, "stdout", Unread())
+    show("a finding")
+    monkeypatch.setattr(sys, "stdout", Full())
+    with pytest.raises(UsageError, match="can't print: no space left on device"):
+        show("a finding")
 
 
 def test_a_stream_that_the_shell_closed_is_none(monkeypatch: pytest.MonkeyPatch) -> None:

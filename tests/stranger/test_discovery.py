@@ -174,7 +174,8 @@ def test_the_metadata_of_a_distribution_is_read(case: str, tmp_path: Path) -> No
     record, entry_points, expected = METADATA[case]
     folder = tmp_path / "waving-2.0.dist-info"
     folder.mkdir()
-    (folder / "METADATA").write_text("Metadata-Version: 2.1\nName: Waving\nVersion: 2.0\n\nName: other\n")
+    about = "Metadata-Version: 2.1\nName: Waving\nVersion: 2.0\nAuthor: Zoë\n\nName: other\n"
+    (folder / "METADATA").write_text(about, encoding="latin-1")
     (folder / "RECORD").write_text(record)
     (folder / "entry_points.txt").write_text(entry_points)
     with on_path(tmp_path):
