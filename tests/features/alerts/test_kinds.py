@@ -3,8 +3,10 @@
 import shutil
 from collections import namedtuple
 from collections.abc import Callable, Iterator
+from contextlib import closing
 from dataclasses import replace
 from pathlib import Path
+from unittest.mock import Mock, call
 
 import pytest
 
@@ -215,6 +217,21 @@ def test_the_robots_process_tells_of_the_brain_and_of_what_it_notices_alone(hall
     hall.nodes[0].interrupt()
     assert hall.told("stopped") == "a person stopped it"
     assert {tuple(body["parts"]) for body in hall.web.bodies} == {("robot",)}
+
+
+def test_the_robots_process_tells_of_the_brain_once_and_that_it_is_back(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(alerting, "BRAIN_PATIENCE", -1.0)
+    desk, others = Mock(), Mock(left=lambda part: False)
+    others.find.side_effect = [True, True, False, False, True, True]
+    with closing(AlertPart(desk, Mock(ability=lambda kind: None), tmp_path, ["robot"], others)) as part:
+        for _ in range(6):
+            part._look_for_brain()
+    assert desk.call_args_list == [
+        call("lost", "the brain no longer responds, and the robot rests", "brain"),
+        call("lost", "the brain is back", "brain.back"),
+    ]
 
 
 @pytest.mark.usefixtures("quick")

@@ -106,6 +106,8 @@ def test_arms_and_head_are_held_up_against_a_fall(body: Body) -> None:
     while not robot.fallen:
         push.act(robot, robot.time)
         robot.advance(0.01)
+    stiffness = dict(zip(body.joints, robot.motors.stiffness.tolist(), strict=True))
+    assert {stiffness[name] for name in body.parts["legs"]} == {skills.FALLEN_STIFFNESS}, "legs would be too slow"
     robot.advance(0.3)
     after = dict(zip(body.joints, robot.world.angles.tolist(), strict=True))
     left = {name: abs(after[name] - goal) / abs(before[name] - goal) for name, goal in goals.items()}

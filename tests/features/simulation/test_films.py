@@ -1,7 +1,7 @@
 """A film: what its camera shows, the texts in it, and its reported progress."""
 
 from itertools import pairwise
-from math import atan2, cos, degrees, dist, hypot, radians, sin, tan
+from math import atan2, cos, degrees, dist, hypot, pi, radians, sin, tan
 from pathlib import Path
 
 import imageio_ffmpeg
@@ -28,6 +28,7 @@ from lumen.features.simulation.filming.shots import (
 from lumen.features.simulation.lettering import MAX_LINES, ROBOT_COLOUR, subtitle, subtitle_pages
 from lumen.features.simulation.offers import SimulatedRobot
 from lumen.language.stories import Visitor
+from tests.tables import for_each
 
 HEAD: HallPoint = (0.0, 0.0, 1.0)
 TORSO: HallPoint = (0.0, 0.0, 0.83)
@@ -103,6 +104,17 @@ def test_whom_a_shot_is_about_is_in_its_picture(
     if shot is Shot.CLOSE_UP and distance > 0.9:
         beside = hypot(place.eye[0] - visitor[0], place.eye[1] - visitor[1])
         assert beside > 0.25, "the camera stands in nobody"
+
+
+@for_each("shot", [Shot.CLOSE_UP, Shot.FULL_SHOT])
+@for_each("heading", [-2.0, 0.0, 0.6, 3.0])
+@for_each(("bearing", "side"), [(-1.0, 32.0), (0.0, -32.0), (1.0, -32.0)])
+def test_the_robot_is_seen_from_in_front_and_beside_the_visitor(
+    shot: Shot, heading: float, bearing: float, side: float
+) -> None:
+    visitor = (cos(heading + bearing), sin(heading + bearing), 1.6)
+    x, y, _ = camera_place(shot, Subjects(HEAD, TORSO, heading, visitor), 16 / 9).eye
+    assert degrees(atan2(y, x) - heading + pi) % 360 - 180 == pytest.approx(side)
 
 
 def test_an_eye_looks_at_its_target() -> None:
