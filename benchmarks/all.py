@@ -15,7 +15,8 @@ import re
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
 from statistics import median
@@ -141,17 +142,25 @@ def first_word(robot: str) -> str:
 
 def _first_word(robot: str) -> float:
     """Return the processor time [s] of an exhibition and its child processes until the robot says its first word."""
-    words = [sys.executable, "-m", "lumen", "run", ROOT, "--story", "visitor", "--robot", robot, "--fresh"]
+    with speaking([sys.executable], ROOT, robot, os.environ) as process:
+        return sum(_processor_time(pid) for pid in _tree(process.pid))
+
+
+@contextmanager
+def speaking(python: Sequence[str], root: Path, robot: str, environment: Mapping[str, str]) -> Iterator[Guarded[str]]:
+    """Start an exhibition with an empty home, and enter the context when the robot has said its first word.
+
+    The process ends with the context. Raises RuntimeError if it ends without a word.
+    """
+    words = [*python, "-m", "lumen", "run", root, "--story", "visitor", "--robot", robot, "--fresh"]
     with tempfile.TemporaryDirectory() as home:
-        environment = {**os.environ, "LUMEN_HOME": home}
-        with Guarded(words, stdout=PIPE, stdin=DEVNULL, text=True, env=environment) as process:
+        own = {**environment, "LUMEN_HOME": home}
+        with Guarded(words, stdout=PIPE, stdin=DEVNULL, text=True, env=own) as process:
             assert process.stdout
-            said = any(SPOKEN in line for line in process.stdout)
-            took = sum(_processor_time(pid) for pid in _tree(process.pid))
+            if not any(SPOKEN in line for line in process.stdout):
+                raise RuntimeError("it ended without a word")
+            yield process
             process.terminate()
-    if not said:
-        raise RuntimeError("it ended without a word")
-    return took
 
 
 def _tree(pid: int) -> Iterator[int]:

@@ -3,7 +3,7 @@
     python benchmarks/instructions.py CHECKOUT [--rows WORD …]
 
 Times differ by a factor of two between two runs on a machine that others use too; the number of instructions differs
-by less than one percent, whatever else runs. It leaves out caches and disks; pairs.py measures times. Both
+by less than one percent, and until the first word by two, whatever else runs. It leaves out caches and disks; pairs.py measures times. Both
 checkouts work on the other checkout's project, with this Python. A figure of an event is the difference between a
 short and a long run; each other figure is the median of three runs.
 """
@@ -24,6 +24,7 @@ from typing import NamedTuple
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
+from all import speaking
 from lint import EDITS, SETTLED_NS, edited
 from pairs import with_project_of
 from tests.guarded import PIPE, STDOUT, run_guarded
@@ -46,6 +47,7 @@ def messages(checked):
     return lambda count: [here.publish(face, body) for _ in range(count)] and None
 """
 """The functions for the rows of events; both checkouts have the modules that they import."""
+COUNTER = ("valgrind", "--tool=cachegrind", "--cache-sim=no", "--cachegrind-out-file=/dev/null")
 COUNTED = re.compile(r"I\s+refs:\s+([\d,]+)")
 HANG = 900
 """The time after which a run counts as hanging [s]."""
@@ -129,6 +131,20 @@ def _linted(place: Place, *, kept: bool = True) -> int:
     return _count(place, "-m", "lumen", "lint", str(place.project))
 
 
+def _first_word(place: Place) -> float:
+    """Return the instructions of a start with known files until the robot speaks, without those of child processes."""
+    _spoken(place)
+    return median(_spoken(place) for _ in range(RUNS))
+
+
+def _spoken(place: Place) -> int:
+    with tempfile.NamedTemporaryFile("r") as log:
+        python = (*COUNTER, f"--log-file={log.name}", sys.executable)
+        with speaking(python, place.project, "recording", _environment(place)):
+            pass
+        return _counted(log.read())
+
+
 def _event(make: str, place: Place) -> float:
     """Return the instructions of one event of the work that the expression `make` returns."""
 
@@ -140,15 +156,29 @@ def _event(make: str, place: Place) -> float:
 
 def _count(place: Place, *words: str | Path) -> int:
     """Return the instructions of a Python process. Raises RuntimeError if it fails."""
-    path = os.pathsep.join(str(place.checkout / part) for part in ("engine", "benchmarks", ""))
-    environment = {**os.environ, "PYTHONPATH": path, "PYTHONHASHSEED": "0", "XDG_CACHE_HOME": str(place.cache)}
-    environment.pop("PYTHONDONTWRITEBYTECODE", None)
-    counter = ("valgrind", "--tool=cachegrind", "--cache-sim=no", "--cachegrind-out-file=/dev/null")
     run = run_guarded(
-        (*counter, sys.executable, *words), env=environment, stdout=PIPE, stderr=STDOUT, text=True, timeout=HANG
+        (*COUNTER, sys.executable, *words),
+        env=_environment(place),
+        stdout=PIPE,
+        stderr=STDOUT,
+        text=True,
+        timeout=HANG,
     )
-    if run.returncode or not (found := COUNTED.search(run.stdout)):
+    if run.returncode:
         raise RuntimeError(f"`{' '.join(map(str, words))}` in {place.checkout}: {run.stdout.strip()[-300:]}")
+    return _counted(run.stdout)
+
+
+def _environment(place: Place) -> dict[str, str]:
+    path = os.pathsep.join(str(place.checkout / part) for part in ("engine", "benchmarks", ""))
+    changed = {"PYTHONPATH": path, "PYTHONHASHSEED": "0", "XDG_CACHE_HOME": str(place.cache)}
+    return {name: text for name, text in {**os.environ, **changed}.items() if name != "PYTHONDONTWRITEBYTECODE"}
+
+
+def _counted(printed: str) -> int:
+    """Return the count in what Valgrind printed. Raises RuntimeError if there is none."""
+    if not (found := COUNTED.search(printed)):
+        raise RuntimeError(f"Valgrind printed no count: {printed.strip()[-300:]}")
     return int(found[1].replace(",", ""))
 
 
@@ -157,6 +187,7 @@ ROWS: dict[str, Callable[[Place], float]] = {
     "`lumen lint`, nothing kept": _lint,
     "the same files again": _same_files,
     "one file changed": _one_changed,
+    "the first word of the recording robot": _first_word,
     "an event of a ring of 15 states": partial(_event, "sending(ring(15))"),
     "an event of three levels, two regions": partial(_event, "sending(regions())"),
     "an event of visits to the tour": partial(_event, "tour()"),

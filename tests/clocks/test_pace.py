@@ -156,7 +156,7 @@ def test_the_clock_of_another_process_follows_the_robots(speed: float, pace: flo
 
 
 def test_the_processes_of_an_exhibition_live_in_the_robots_time(capsys: pytest.CaptureFixture[str]) -> None:
-    """The robot's process publishes the time; all other processes follow it, and leave it to that one to say so."""
+    """The robot's process publishes the time; all other processes follow it. Only it reports a slow machine."""
     exhibit, outside = project(), Outside()
     robots = World(outside, 1 / 0.8)
     robot = RecordingRobot(exhibit.body)
