@@ -3,9 +3,9 @@
     python benchmarks/instructions.py CHECKOUT [--rows WORD …]
 
 Times differ by a factor of two between two runs on a machine that others use too; the number of instructions differs
-by less than one percent, and until the first word by two, whatever else runs. It leaves out caches and disks; pairs.py measures times. Both
-checkouts work on the other checkout's project, with this Python. A figure of an event is the difference between a
-short and a long run; each other figure is the median of three runs.
+by less than one percent, and until the first word by two, whatever else runs. It leaves out caches and disks; pairs.py
+measures times. Both checkouts work on the other checkout's project, with this Python. A figure of an event is the
+difference between a short and a long run; each other figure is the median of three runs.
 """
 
 import argparse
