@@ -176,7 +176,7 @@ def _environment(place: Place) -> dict[str, str]:
 
 
 def _counted(printed: str) -> int:
-    """Return the count in what Valgrind printed. Raises RuntimeError if there is none."""
+    """Return the number of instructions that Valgrind printed. Raises RuntimeError if there is none."""
     if not (found := COUNTED.search(printed)):
         raise RuntimeError(f"Valgrind printed no count: {printed.strip()[-300:]}")
     return int(found[1].replace(",", ""))
