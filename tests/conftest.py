@@ -1,11 +1,10 @@
 """Fixtures for all tests, their marks and measurements, and the fixed seed of hypothesis' examples."""
 
-import os
 import signal
 
 from hypothesis import HealthCheck, settings
 
-from tests import ROOT
+from tests.environment import settle
 
 pytest_plugins = [
     "tests.provided",  # first, since others import it
@@ -22,8 +21,7 @@ pytest_plugins = [
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # as in the background of a script
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
-os.environ["XDG_CACHE_HOME"] = str(ROOT / ".cache/xdg")
-"""The cache that one start keeps for the next, shared by all tests of this and later runs."""
+settle()
 
 settings.register_profile(
     "seeded",
