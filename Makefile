@@ -50,7 +50,7 @@ test: setup
 	@$(MAKE) --no-print-directory -j 2 check tested
 
 tested:
-	@$(BIN)/lumen lint --strict
+	@env -u LUMEN_MODEL $(BIN)/lumen lint --strict
 	@$(PYTEST) -m "not soak" --suite test --expect-cpu $(CPU)
 
 test-all: test rest
