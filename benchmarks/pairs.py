@@ -85,12 +85,14 @@ def main() -> int:
 
 
 def with_project_of(checkout: Path, folder: Path) -> Path:
-    """Fill a new folder with links to this checkout, and with the project's files of the other; return the folder."""
+    """Fill a new folder with this checkout, mostly as links, and the project of the other; return the folder."""
     folder.mkdir()
     project = {MAIN_FILE, *PROJECT_FOLDERS}
     for path in ROOT.iterdir():
-        if path.name not in (*project, ".lumen"):
+        if path.name not in (*project, ".lumen", "benchmarks"):
             (folder / path.name).symlink_to(path)
+    # Python puts the real folder of a script on its path: in a linked folder, scripts would import those of ROOT.
+    shutil.copytree(ROOT / "benchmarks", folder / "benchmarks")
     for name in filter(lambda name: (checkout / name).exists(), project):
         if name == MAIN_FILE:
             shutil.copy(checkout / name, folder)
