@@ -1,6 +1,7 @@
 """Finds states that lead back to themselves without a guard or a delay: by events, `do`, `invoke`, `after: 0s`."""
 
 from collections.abc import Iterator
+from functools import partial
 
 from lumen.language.diagnostics import WARNING, Code
 from lumen.language.machines import MachineDefinition, State
@@ -9,6 +10,7 @@ from lumen.lint.instant_chains import InstantChain, TakenTransition, asked_guard
 from lumen.lint.statecharts import ALWAYS_LOOP
 from lumen.project.document_report import DocumentReport
 from lumen.project.draft import ProjectDraft
+from lumen.project.memoization import Same, memoize
 from lumen.project.transitions import ENDLESS_ALWAYS
 
 ENDLESS_CHAIN = Code("endless-chain", "statecharts", WARNING, "transitions loop for ever, without a guard or a delay")
@@ -26,11 +28,33 @@ def check(draft: ProjectDraft) -> None:
     ends: dict[tuple[int, int], bool | None] = {}
     for name, machine in draft.behaviors.items():
         report = draft.report("behaviors", name)
-        told: set[int] = set()
-        for chain in _beginnings(ChainSurvey(machine, ends)):
-            if (around := round_of(chain)) and told.isdisjoint(id(t) for t, _ in around):
-                told.update(id(t) for t, _ in around)
-                _report(machine, around, asked_guards(chain, len(around)), report)
+        rounds = memoize(("endless chains", name), _with_invoked(machine), partial(_rounds, machine, ends))
+        for around, asked in rounds:
+            _report(machine, around, asked, report)
+
+
+def _with_invoked(machine: MachineDefinition) -> tuple[Same, ...]:
+    """Return a machine and all that it invokes, directly or not: chains depend on them alone."""
+    found = {id(machine): machine}
+    ahead = [machine]
+    while ahead:
+        new = {id(other): other for other in ahead.pop().invoked.values() if id(other) not in found}
+        found |= new
+        ahead += new.values()
+    return tuple(map(Same, found.values()))
+
+
+def _rounds(
+    machine: MachineDefinition, ends: dict[tuple[int, int], bool | None]
+) -> list[tuple[list[TakenTransition], list[str]]]:
+    """Return the transitions of each chain that never comes to rest, and the guards that it checks."""
+    found: list[tuple[list[TakenTransition], list[str]]] = []
+    told: set[int] = set()
+    for chain in _beginnings(ChainSurvey(machine, ends)):
+        if (around := round_of(chain)) and told.isdisjoint(id(t) for t, _ in around):
+            told.update(id(t) for t, _ in around)
+            found.append((around, asked_guards(chain, len(around))))
+    return found
 
 
 def _beginnings(survey: ChainSurvey) -> Iterator[InstantChain]:

@@ -18,6 +18,8 @@ def whole_text(document: Document, path: NodePath, *, by_language: bool = False)
     around = document.find(path[:-1])
     if not path or not isinstance(around, dict) or path[-1] not in around:
         return ""
+    if not _is_rest(document, path, around[path[-1]], by_language):
+        return ""
     keys = list(around)
     rests = [_is_rest(document, (*path[:-1], key), around[key], by_language) for key in keys]
     at = keys.index(path[-1])

@@ -187,7 +187,7 @@ def _at_root(root: Path, look: Callable[[Path], object]) -> Iterator[Unread]:
     for name in listed_in(root, ""):
         if name in PROJECT_FOLDERS or name in MISTAKEN_FOLDERS or name == DRIVERS_FOLDER or name.startswith("."):
             continue
-        if name.lower() in ALL_FOLDERS or not (near := nearest(name, known)) or not os.path.isdir(root / name):
+        if name.lower() in ALL_FOLDERS or not os.path.isdir(root / name) or not (near := nearest(name, known)):
             continue
         endings = (".py",) if near == DRIVERS_FOLDER else endings_in(known[near]) or (".json",)
         if first := _first(root, name, endings, 1, look):
