@@ -12,6 +12,7 @@ import lumen
 from lumen.bus import Bus, connect
 from lumen.language.commands import Look, Play, Say, Start
 from lumen.language.events import Event
+from lumen.language.operator_requests import REQUESTS
 from lumen.ports import Message
 from lumen.run.activity_tracker import ActivityTracker
 from lumen.run.asking import operator_key
@@ -19,6 +20,7 @@ from lumen.run.exhibition import Exhibition
 from lumen.run.raised_events import person_in
 from lumen.statechart.direct_entry import entered_directly
 from tests import ROOT
+from tests.app.test_request_checks import RIGHT
 from tests.tables import for_each
 from tests.waiting import until
 
@@ -204,6 +206,8 @@ def test_what_can_be_no_event_is_refused(mine: Path) -> None:
             assert refused["verdict"] == "refused"
             assert "only robots send it" in refused["reason"]
         assert '`{"ask": "now"}`' in send_request("nothing")["reason"]
+        for row in REQUESTS:
+            assert send_request(row.ask, **RIGHT.get(row.ask, {})), f"`{row.ask}` is not answered"
 
 
 def test_a_text_of_somebody_else_is_told_as_long_as_it_takes(copy: Path) -> None:

@@ -58,7 +58,9 @@ MAX_NOTE = 300
 MAX_STATE = 200
 """The greatest length of a state's name [characters]."""
 Responder = Callable[[Message, float], dict[str, Any]]
-"""A function that answers a valid request at a time [s]."""
+"""A function that returns the answer to a valid request at a time [s]."""
+Handler = Callable[[Message, float], None]
+"""A function that sees to it that a valid request at a time [s] is answered, now or later."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -126,7 +128,12 @@ class OperatorPart(Part, Observer):
         self.model = ModelSwitch(behavior.loop.performer.questions, lambda: runtime.project, records.write, kept)
         self._raising = RaisedEvents(behavior.loop, self._reply)
         self._requests = RequestChecks()
-        self._answers: Mapping[str, Responder] = {
+        self._handlers = self._by_request()
+        behavior.loop.observers += [self.steps, self._activity, self._raising]
+
+    def _by_request(self) -> Mapping[str, Handler]:
+        """Return the handler of each request, by its `ask`."""
+        answers: Mapping[str, Responder] = {
             STATUS.ask: lambda _message, _now: self.status(),
             MARK.ask: self._mark,
             NOTE.ask: self._noted,
@@ -135,7 +142,16 @@ class OperatorPart(Part, Observer):
             MODEL.ask: lambda m, _: self.model.switch(person_in(m), on=m.body["on"]),
             GOTO.ask: self._goto,
         }
-        behavior.loop.observers += [self.steps, self._activity, self._raising]
+        return {
+            **{ask: partial(self._answer, respond) for ask, respond in answers.items()},
+            EVENT.ask: self._raising.happen,
+            PRESS.ask: self._raising.happen,
+            WHY.ask: lambda message, _: self._answering.request(message),
+            WHY_NOT.ask: lambda message, _: self._answering.request(message),
+            FORK.ask: self._fork,
+            JOURNAL.ask: lambda message, _: self._pages.request(message),
+            NOW.ask: lambda message, _: self._pages.answer(message, partial(self._view.tell, self._moment())),
+        }
 
     def begin(self, now: float) -> None:
         self._since = now
@@ -158,23 +174,10 @@ class OperatorPart(Part, Observer):
         self._raising.look()
         while self._received:
             message = self._received.popleft()
-            if not (request := self._requests.valid(message.body)):
-                self._reply(message, refusal(self._requests.fault(message.body)))
-            elif request in (EVENT, PRESS):
-                self._raising.happen(message, now)
-            elif request in (WHY, WHY_NOT):
-                self._answering.request(message)
-            elif request is FORK:
-                from lumen.run.forking import forked  # this imports the whole check of files
-
-                running = self._behavior.loop.runtime.project
-                self._answering.answer(message, partial(forked, self._journal, running, message.body))
-            elif request is JOURNAL:
-                self._pages.request(message)
-            elif request is NOW:
-                self._pages.answer(message, partial(self._view.tell, self._moment()))
+            if request := self._requests.valid(message.body):
+                self._handlers[request.ask](message, now)
             else:
-                self._reply(message, self._answers[request.ask](message, now))
+                self._reply(message, refusal(self._requests.fault(message.body)))
 
     def close(self) -> None:
         self._undo()
@@ -227,6 +230,15 @@ class OperatorPart(Part, Observer):
     def _reply(self, message: Message, answer: Mapping[str, Any]) -> None:
         with suppress(BusError):  # the bus is closed, so no reply can be sent
             self._bus.reply(message, answer)
+
+    def _answer(self, respond: Responder, message: Message, now: float) -> None:
+        self._reply(message, respond(message, now))
+
+    def _fork(self, message: Message, _: float) -> None:
+        from lumen.run.forking import forked  # this imports the whole check of files
+
+        running = self._behavior.loop.runtime.project
+        self._answering.answer(message, partial(forked, self._journal, running, message.body))
 
     def _mark(self, message: Message, _: float) -> dict[str, Any]:
         kept = self._marking()
