@@ -17,7 +17,7 @@ from lumen.language.people import PersonName
 from lumen.language.projects import Project
 from lumen.language.stories import Story
 from lumen.ports import Bus, HasSpeed, RobotCommand
-from lumen.run.loop import BehaviorLoop
+from lumen.run.loop import BRAIN_LOST_AFTER, BehaviorLoop
 from lumen.run.setup import Setup
 from lumen.run.story import staged
 from lumen.run.story_time import story_epoch
@@ -77,7 +77,8 @@ class LiveBehavior:
 
     A story sets the behaviour, the language, the time of day and the context at the start. `adopt` switches everything
     around the loop to another bundle, and may raise BusError. With `published` each step is sent to the bus. `refuse`
-    returns why the robot may not begin a command; empty if it may.
+    returns why the robot may not begin a command; empty if it may. A gap between ticks of `patience` [s] on the clock
+    raises `brain.lost`.
     """
 
     def __init__(
@@ -90,12 +91,13 @@ class LiveBehavior:
         published: bool = True,
         adopt: Callable[[Project], None] = lambda _: None,
         refuse: Callable[[RobotCommand], str] = lambda _: "",
+        patience: float = BRAIN_LOST_AFTER,
     ) -> None:
         self._story, self._local_timezone = story, "" if story else local_timezone()
-        self.loop = BehaviorLoop(staged(project, story), setup.robot, bus, setup.clock, setup.tracking, refuse)
         paced = ability(setup.clock, HasSpeed)
-        real = story is None and paced is not None and paced.speed == 1.0
-        self.loop.wall_clock = WallClockWatch(self._timezone, real=real)
+        watch = WallClockWatch(self._timezone, real=story is None and paced is not None and paced.speed == 1.0)
+        tracking, clock = setup.tracking, setup.clock
+        self.loop = BehaviorLoop(staged(project, story), setup.robot, bus, clock, tracking, refuse, watch, patience)
         self.trace = TracePublisher(
             bus,
             lambda: self.loop.project,

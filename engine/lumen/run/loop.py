@@ -136,7 +136,8 @@ class BehaviorLoop:
     At each tick the clock waits, tracking runs, inputs become events, the behaviour steps, its commands are performed,
     and `observers` are called. If a tick fails because of the bundle or an internal error, one of the `rescuers` may
     switch to another bundle. `tracking` lets controllers follow sightings; if it is None, the loop does so itself.
-    `refuse` returns why the robot may not begin a command; empty if it may.
+    `refuse` returns why the robot may not begin a command; empty if it may. `wall_clock` detects changes of the time of
+    day; if it is None, they are ignored. A gap between ticks of `patience` [s] on the clock raises `brain.lost`.
     """
 
     def __init__(
@@ -147,12 +148,13 @@ class BehaviorLoop:
         clock: Clock,
         tracking: TrackingService | None = None,
         refuse: Callable[[RobotCommand], str] = lambda _: "",
+        wall_clock: WallClockWatch | None = None,
+        patience: float = BRAIN_LOST_AFTER,
     ) -> None:
         self.robot, self.bus, self.clock = robot, bus, clock
         self.observers: list[Observer] = []
         self.rescuers: list[Rescuer] = []
-        self.wall_clock: WallClockWatch | None = None
-        """Detects changes of the time of day; None if they are ignored."""
+        self._wall_clock, self._patience = wall_clock, patience
         self.runtime = Runtime(project, self._stepped, self._rescued, self._dropped)
         self.inbox, self.board = Inbox(bus), SharedBoard(bus)
         self.tracking: TrackingService = tracking or LocalTracking(project, robot, bus)
@@ -163,8 +165,6 @@ class BehaviorLoop:
         self._life = LifeDirector(robot)
         self._events: list[Event] = []
         self._last = clock.now()
-        self.patience = BRAIN_LOST_AFTER
-        """The gap between ticks on the clock from which the behaviour receives `brain.lost` [s]."""
         self.rests = False
         """Whether the behaviour has made the robot rest."""
         self.step = 0
@@ -233,7 +233,7 @@ class BehaviorLoop:
         if now is None:
             self.clock.wait(self._last + TICK_PERIOD)
             now = self.clock.now()
-        if now - self._last > self.patience:
+        if now - self._last > self._patience:
             self._lose(now - self._last)
         self._last = now
         try:
@@ -359,7 +359,7 @@ class BehaviorLoop:
             self._perform(self._cues.answered(event, self.project, self.runtime.snapshot.language), now)
         happened, self._events = self._events, []
         heard = [event for event in answers if _ours(event) and not self._known(event, now)]
-        if self.wall_clock and (clock_set := self.wall_clock.tick(self.clock.now, self.runtime.snapshot)):
+        if self._wall_clock and (clock_set := self._wall_clock.tick(self.clock.now, self.runtime.snapshot)):
             happened = [clock_set, *happened]
         happened = [*happened, *self.runtime.approvals.tick(now)]
         own = [caused(event) for event in (*heard, *(event._replace(at=now) for event in happened))]
@@ -397,7 +397,7 @@ class BehaviorLoop:
         self._events.append(Event("brain.lost", {"seconds": seconds}, self._lost_at))
 
     def _known(self, event: Event, now: float) -> bool:
-        return event.name == "brain.lost" and now - self._lost_at < self.patience
+        return event.name == "brain.lost" and now - self._lost_at < self._patience
 
     def _note_rest(self, command: Command) -> None:
         match command:

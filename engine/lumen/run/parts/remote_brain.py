@@ -16,7 +16,7 @@ from lumen.robot.person_hold import StoppedBy, on_head
 from lumen.robot.remote import RemoteRobot
 from lumen.run.delegated_tracking import DelegatedTracking
 from lumen.run.live_behavior import LiveBehavior
-from lumen.run.loop import Observer
+from lumen.run.loop import BRAIN_LOST_AFTER, Observer
 from lumen.run.narrator import Narrator
 from lumen.run.parts.brain import BrainPart
 from lumen.run.presence import BRAIN, HERE, MOTION, ROBOT_PART, Presence, where_it_runs
@@ -61,8 +61,8 @@ class RemoteBody:
         speed, because the robot's process counts in real time as well.
         """
         setup = Setup(self.robot, self._clock, None, tracking=self.tracking)
-        found = LiveBehavior(project, setup, bus, story, adopt=adopt, refuse=refuse)
-        found.loop.patience *= speed
+        patience = BRAIN_LOST_AFTER * speed
+        found = LiveBehavior(project, setup, bus, story, adopt=adopt, refuse=refuse, patience=patience)
         self._project = lambda: found.project
         return found
 
