@@ -75,7 +75,6 @@ def test_a_broker_that_is_away_is_said_and_gone_on_with(copy: Path, own_broker: 
             until(lambda: not browser.robots[0]["connected"])
             answer = browser.command("rest", robot=robot["robot"])
             assert answer.data["state"] == "unsent"
-            assert answer.data["seconds"] < 1.0
             assert browser.command("say", text="Hello").data["state"] == "unsent"
             own_broker.start()
             until(lambda: browser.robots[0]["connected"])
