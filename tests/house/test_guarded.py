@@ -91,7 +91,8 @@ def test_what_a_process_started_ends_when_it_is_killed(program: str, start: Star
 
 @pytest.mark.parametrize("end", ["quit()", "1 / 0", "import os; os._exit(1)"])
 def test_or_ends_otherwise(end: str, start: Start, tmp_path: Path) -> None:
-    start("-c", FAMILY + end).communicate()
+    out, _ = start("-c", FAMILY + end).communicate()
+    assert out == "started\n"
     gone(tmp_path)
 
 

@@ -336,10 +336,8 @@ def test_a_revision_is_compared_and_every_configuration_told(
     tour.write_text(tour.read_text().replace("ask: {on: {released: dance}}, ", ""))
     assert main(["diff", "HEAD", "--configurations"]) == 1
     out = capsys.readouterr().out.splitlines()
-    assert (
-        out[:3] == [TOUR, "  state `talk.ask` removed (behavior)", "  `talk` now begins in `talk.dance` (behavior)"]
-        or out
-    )
+    changes = [TOUR, "  state `talk.ask` removed (behavior)", "  state `talk` now begins in `talk.dance` (behavior)"]
+    assert out[:3] == changes, out
     assert "refused talk.ask: `talk.ask` is active but was removed, and no `onReload` names another state" in out
     assert "kept    idle" in out
     assert out[-1] == "3 configurations: 1 refused, 2 kept"
