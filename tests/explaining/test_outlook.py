@@ -18,7 +18,6 @@ from tests.statechart.oracle.generating import EVENTS, Data, machine_data
 QUICK = settings(
     max_examples=60, deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large]
 )
-_TALLY: Counter[str] = Counter()
 
 
 def ways(machine: Machine, *events: Event) -> list[WayOut]:
@@ -33,9 +32,22 @@ def selects(way: WayOut, event: str) -> bool:
     return wanted in ("*", event) or event.startswith(wanted.removesuffix(".*") + ".")
 
 
-@QUICK
-@given(machine_data(), inputs, st.sampled_from([None, {"k": 1}, {"k": 3}]))
-def test_what_is_closed_is_not_taken(data: Data, happenings: list[Any], brought: Any) -> None:
+def test_what_is_closed_is_not_taken() -> None:
+    """More than ten cases of each kind are met; fewer would show nothing."""
+    tally: Counter[str] = Counter()
+
+    @QUICK
+    @given(machine_data(), inputs, st.sampled_from([None, {"k": 1}, {"k": 3}]))
+    def tried(data: Data, happenings: list[Any], brought: Any) -> None:
+        tally.update(_tried(data, happenings, brought))
+
+    tried()
+    assert min(tally["taken"], tally["not taken"], tally["closed"]) > 10
+
+
+def _tried(data: Data, happenings: list[Any], brought: Any) -> Counter[str]:
+    """Send each event to the last states of a run; return how often it was taken, and its ways closed."""
+    tally: Counter[str] = Counter()
     machine, events = Machine.from_dict(data), timed(happenings)
     for one in live(machine, events, events[-1].at)[-4:]:
         snapshot = one.step.snapshot
@@ -48,14 +60,9 @@ def test_what_is_closed_is_not_taken(data: Data, happenings: list[Any], brought:
                 assert not [way for way in named if not way.open and any(way.transition is t for t in first)]
                 sure = [way for way in named if way.open and (way.guard is None or way.guard.holds)]
                 assert first or not [way for way in sure if not way.transition.timed]
-                _TALLY["taken" if first else "not taken"] += 1
-                _TALLY["closed"] += sum(not way.open for way in named)
-
-
-def test_enough_was_tried() -> None:
-    """The tests above met more than ten cases of each kind; else they would show nothing."""
-    if _TALLY:
-        assert min(_TALLY["taken"], _TALLY["not taken"], _TALLY["closed"]) > 10
+                tally["taken" if first else "not taken"] += 1
+                tally["closed"] += sum(not way.open for way in named)
+    return tally
 
 
 def test_why_is_said_in_words() -> None:
