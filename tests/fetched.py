@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from tests import ROOT
+from tests.environment import downloading
 from tests.guarded import run_guarded
 from tests.provided import not_provided
 
@@ -18,7 +19,8 @@ def fetched(name: str) -> Path:
     Fails the test if fetching fails; skips it if this machine has no npm and could not be given one.
     """
     folder = f".cache/{name}"
-    done = run_guarded([sys.executable, ROOT / "scripts/fetch.py", folder], capture_output=True, text=True)
+    command = [sys.executable, ROOT / "scripts/fetch.py", folder]
+    done = run_guarded(command, env=downloading(), capture_output=True, text=True)
     if done.returncode:
         if "npm is not installed" in done.stderr and (told := not_provided("npm")):
             pytest.skip(told, allow_module_level=True)

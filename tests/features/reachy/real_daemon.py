@@ -11,6 +11,7 @@ import pytest
 from lumen.errors import RobotError
 from lumen.features.reachy.daemon_api import DaemonAddress, DaemonApi
 from tests import ROOT
+from tests.environment import downloading
 from tests.guarded import STDOUT, Guarded, run_guarded
 from tests.waiting import until
 
@@ -25,7 +26,7 @@ def program() -> Path:
     if MISSING.exists():
         pytest.skip(f"{MISSING.read_text().strip()} (delete {MISSING.relative_to(ROOT)} to try again)")
     script = ROOT / "tests/features/reachy/install_daemon.sh"
-    done = run_guarded(["sh", script], capture_output=True, text=True, env={**os.environ, "PYTHON": sys.executable})
+    done = run_guarded(["sh", script], capture_output=True, text=True, env={**downloading(), "PYTHON": sys.executable})
     if done.returncode:
         pytest.skip(MISSING.read_text().strip() if MISSING.exists() else done.stderr[-200:])
     return PROGRAM
