@@ -354,16 +354,17 @@ def make(request):
 
 
 def test_a_forgetter_that_leaves_keeps_no_other_from_forgetting(
-    installed: Installed, caplog: pytest.LogCaptureFixture
+    installed: Installed,
 ) -> None:
     code = "FORGOTTEN = []\ndef leave(person): exit()\ndef forget(person): FORGOTTEN.append(person.key)"
     row = "forgets=('faulty_code:leave', 'faulty_code:forget')"
     installed.write("faulty", MANIFEST.format(row=row), faulty_code=code)
-    with caplog.at_level(logging.ERROR):
-        FeatureForgetter(lambda kind: None).forget(PersonName("Ani"))
+    told = list[str]()
+    FeatureForgetter(lambda kind: None, told.append).forget(PersonName("Ani"))
     forgotten: Any = resolve("faulty_code:FORGOTTEN")
     assert forgotten == ["ani"]
-    assert "by `faulty_code:leave` of the package faulty 1.0: SystemExit" in caplog.text
+    (fault,) = told
+    assert "`faulty` 1.0 is faulty: `faulty_code:leave` raised SystemExit and did not forget a person" in fault
 
 
 def test_a_faulty_row_keeps_the_others_of_its_package(installed: Installed) -> None:

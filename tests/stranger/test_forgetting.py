@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 import lumen
+from lumen.cli.run_verdict import troubles_of
 from lumen.feature import resolve
 from lumen.language.people import PersonName
 from lumen.language.stories import Visitor
@@ -33,6 +34,11 @@ def fails(person):
 def forget(person):
     FORGOTTEN.append(person)
 """
+FAULTS = {
+    name: f"the installed package `lumen-guests` 1.0 is faulty: `guest_list:{name}` raised {kind} and did not forget a"
+    " person (update `lumen-guests`, or remove it: pip uninstall lumen-guests)"
+    for name, kind in (("gone", "AttributeError"), ("fails", "ValueError"))
+}
 
 
 def forgotten(module: str) -> list[str]:
@@ -69,14 +75,21 @@ def test_if_one_feature_fails_the_others_forget_and_the_log_has_no_name(
     installed: Installed, caplog: pytest.LogCaptureFixture
 ) -> None:
     installed.write("lumen-guests", MANIFEST, guest_list=GUESTS)
-    FeatureForgetter(lambda kind: None).forget(PersonName("Ani"))
+    told = list[str]()
+    FeatureForgetter(lambda kind: None, told.append).forget(PersonName("Ani"))
     assert forgotten("guest_list") == ["ani"]
-    assert [record.getMessage() for record in caplog.records] == [
-        f"a person is not forgotten by `guest_list:{name}` of the package lumen-guests 1.0: {kind}"
-        for name, kind in (("gone", "AttributeError"), ("fails", "ValueError"))
-    ]
+    assert told == [record.getMessage() for record in caplog.records] == [FAULTS["gone"], FAULTS["fails"]]
     assert {record.levelno for record in caplog.records} == {logging.ERROR}
     assert "ani" not in caplog.text.lower()
+
+
+def test_a_run_in_which_a_package_failed_to_forget_ends_with_trouble(installed: Installed, tmp_path: Path) -> None:
+    installed.write("lumen-guests", MANIFEST, guest_list=GUESTS)
+    root = copied_project(ROOT / "examples/minimal", tmp_path / "minimal")
+    with lumen.open(root, robot="recording") as exhibition:
+        exhibition.services.bus.publish("lumen.NAO.persistence.forgotten", {"name": "Ani"})
+        exhibition.run(seconds=1)
+        assert troubles_of(exhibition.node, judged=True) == [FAULTS["gone"], FAULTS["fails"]]
 
 
 def test_lumen_memory_forget_names_the_package(installed: Installed) -> None:

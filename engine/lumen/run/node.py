@@ -110,7 +110,7 @@ class Node:
         self.bus, self.presence = bus, presence
         self.parts: list[Part] = []
         self.faults: list[str] = []
-        """The faults of packages: of parts that are stopped or left out, and of subscribers."""
+        """The faults of packages: parts that are stopped or left out, failures to forget a person, and subscribers."""
         self._before = before
         self._nap = nap or Nap()
         self.now, self._asked = clock.now(), time.monotonic()

@@ -39,7 +39,7 @@ class Services:
     def __init__(self, plan: Plan) -> None:
         self.plan, self.clock, self.nap = plan, plan.time, Nap()
         bus = connect(plan.bus, sender="+".join(plan.roles) or EXHIBITION) if isinstance(plan.bus, str) else plan.bus
-        self.bus = validated(bus, plan.project, arrived=self.nap.end, failed=self._subscriber_failed)
+        self.bus = validated(bus, plan.project, arrived=self.nap.end, failed=self.failed)
         self.narrator = plan.narrator or Narrator(self.clock.now, lambda: self.project.machine)
         self.presence = self._presence() if plan.shared else None
         self.node = Node(
@@ -129,13 +129,12 @@ class Services:
 
     def part_stopped(self, part: str, fault: str) -> None:
         """Print why a part of a package was stopped, keep that for the end, and notify all other parts."""
-        self.narrator.line("trouble", fault)
-        self.node.faults.append(fault)
+        self.failed(fault)
         for other in self.node.parts:
             other.part_stopped(part)
 
-    def _subscriber_failed(self, fault: str) -> None:
-        """Print the fault of a subscriber of a package, and keep it for the end; on any thread."""
+    def failed(self, fault: str) -> None:
+        """Print a fault of a package, and keep it for the end of the run; callable on any thread."""
         self.narrator.line("trouble", fault)
         self.node.faults.append(fault)
 

@@ -9,6 +9,7 @@ from lumen.bus.brokers import side_queues
 from lumen.feature import distribution_of, resolve, rows
 from lumen.language.people import PersonName
 from lumen.language.routes import Carried, Direction, Route
+from lumen.project.broken_features import faulty
 
 
 class ForgottenPlace(NamedTuple):
@@ -74,12 +75,12 @@ _log = logging.getLogger(__name__)
 class FeatureForgetter:
     """A forgetter that calls every feature; `find` returns the part or service of a class in this process, or None.
 
-    If code of an installed package fails, the other features still forget. The log then has only the type of the error,
-    because the message may contain the name.
+    If code of an installed package fails, the other features still forget, and `failed` is called with a sentence. It
+    has only the type of the error, because the message may contain the name.
     """
 
-    def __init__(self, find: Callable[[type[Any]], Any]) -> None:
-        self._find = find
+    def __init__(self, find: Callable[[type[Any]], Any], failed: Callable[[str], None]) -> None:
+        self._find, self._failed = find, failed
 
     def forget(self, person: PersonName) -> None:
         """Call the forgetting function, or the `forget` of the part, of each feature's row."""
@@ -89,10 +90,11 @@ class FeatureForgetter:
             except KeyboardInterrupt:
                 raise
             except BaseException as error:  # a package's code may even raise SystemExit
-                if (distribution := distribution_of(feature)) is None:
+                if distribution_of(feature) is None:
                     raise
-                kind = type(error).__name__
-                _log.error("a person is not forgotten by `%s` of the package %s: %s", where, distribution, kind)
+                fault = faulty(feature, f"`{where}` raised {type(error).__name__} and did not forget a person")
+                _log.error("%s", fault)
+                self._failed(str(fault))
 
     def _forget(self, named: Any, person: PersonName) -> None:
         if not isinstance(named, type):

@@ -33,7 +33,7 @@ def journal(services: Services) -> None:
 
 def forgetting(services: Services) -> ForgettingPart | None:
     """Make the part that forgets a visitor; None if this process keeps no data about visitors."""
-    project, bus, added = services.plan.project, services.bus, FeatureForgetter(services.get)
+    project, bus, added = services.plan.project, services.bus, FeatureForgetter(services.get, services.failed)
     if services.plan.brain:
         forget = services.behavior.forget, services[RunRecords].forget, added.forget
         return ForgettingPart(project, bus, *forget, needs=services.needs)
