@@ -10,8 +10,8 @@ from scopes import OWN, Function, Package, Place, Scoped, assigned, is_property,
 SEAMS = {"bus", "clock", "robot"}
 """The objects that access the world, by the last word of their names in the code."""
 SEAM_TYPES = {"Bus", "Clock", "Robot"}
-PORTS = "ports.py"
-"""The file whose protocols are the seams and their abilities."""
+PORTS = "ports/"
+"""The folder whose protocols are the seams and their abilities."""
 ADDING = {"append", "appendleft", "add", "extend", "insert", "setdefault", "update"}
 """The methods that put a value into a list, a set or a table."""
 CONSTRUCTORS = {"__init__", "__post_init__", "__new__"}
@@ -41,13 +41,16 @@ def seam_probes(package: Package) -> list[Place]:
     """Return the lines that probe a bus, a clock or a robot with `getattr` or `hasattr`.
 
     An expression is such an object if its last name ends in one of `SEAMS`, if its annotation names a seam or one of
-    the protocols of ports.py, or if the file assigns it from such an expression.
+    the protocols of `PORTS`, or if the file assigns it from such an expression. Raises LookupError if there are no such
+    protocols, because then the folder has another name.
     """
     types = {
         scoped.node.name
         for scoped in package.of(ast.ClassDef)
-        if scoped.file.path == PORTS and any(last_word(base) == "Protocol" for base in scoped.node.bases)
+        if scoped.file.path.startswith(PORTS) and any(last_word(base) == "Protocol" for base in scoped.node.bases)
     }
+    if not types:
+        raise LookupError(f"no class in {PORTS} is a Protocol")
     names = _seam_names(package, types | SEAM_TYPES)
     probes = {
         (scoped.file.path, scoped.node.lineno, ast.unparse(scoped.node))

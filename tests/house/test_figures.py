@@ -74,8 +74,13 @@ def test_a_probe_of_a_seam_is_found_by_name_by_annotation_and_by_assignment() ->
         getattr(bus_url, "scheme")
         isinstance(world, Dozes)
     """
-    found = seam_probes(package({"ports.py": ports, "nap.py": code}))
+    found = seam_probes(package({"ports/world.py": ports, "nap.py": code}))
     assert [place.line for place in found] == [3, 4, 5, 6, 8]
+
+
+def test_probes_are_not_zero_because_the_ports_have_another_name() -> None:
+    with pytest.raises(LookupError, match="no class in ports/ is a Protocol"):
+        seam_probes(package({"seams/world.py": "class Dozes(Protocol): ...\n"}))
 
 
 CALLED = """
