@@ -8,8 +8,16 @@ import pytest
 from lumen.features.simulation.trials import outcome_cache
 from lumen.project import engine_files
 
-DECIDE = ("lumen.motion.gait", "lumen.motion.life", "lumen.robot.executor", "lumen.features.simulation.trials.trial")
-"""Modules that decide whether a motion falls, at different depths."""
+DECIDE = (
+    "lumen.motion.gait",
+    "lumen.motion.life",
+    "lumen.robot.executor",
+    "lumen.features.simulation.trials.trial",
+    "lumen.project.bodies",
+    "lumen.project.roles",
+    "lumen.project.units",
+)
+"""Modules that decide whether a motion falls, at different depths; those of `lumen.project` build the body."""
 
 
 @pytest.mark.parametrize("name", DECIDE)

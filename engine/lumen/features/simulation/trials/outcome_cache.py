@@ -21,8 +21,15 @@ from lumen.project.project_folders import MODELS
 from lumen.robot.motion_codec import encode_motion
 from lumen.upkeep.own_folders import private_folder
 
-CODE = ("lumen.features.simulation", "lumen.fuzzy", "lumen.language", "lumen.motion", "lumen.robot")
-"""The packages whose code affects a simulated motion's outcome."""
+CODE = (
+    "lumen.features.simulation",
+    "lumen.fuzzy",
+    "lumen.language",
+    "lumen.motion",
+    "lumen.project",
+    "lumen.robot",
+)
+"""The packages whose code affects a simulated motion's outcome; `lumen.project` builds the body and the passages."""
 
 
 class OutcomeCache:
