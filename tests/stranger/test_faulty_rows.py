@@ -148,8 +148,8 @@ def test_a_faulty_repair_is_an_error_that_names_its_package(code: str, fault: st
 @pytest.mark.parametrize(
     ("code", "fault"),
     [
-        ("def odd(): 1 / 0", "division by zero (`odd` raised ZeroDivisionError)"),
-        ("def odd(): raise SystemExit(1)", "1 (`odd` raised SystemExit)"),
+        ("def odd(): 1 / 0", "`odd` raised ZeroDivisionError: division by zero"),
+        ("def odd(): raise SystemExit(1)", "`odd` raised SystemExit: 1"),
         ("raise SystemExit(1)", "the function `odd` can't be imported: SystemExit: 1"),
         ("def odd(): return {1}", "`odd` returned a value that is not JSON data"),
         ("def odd(): return 'x'", "`odd` returned text, but its row says number"),

@@ -115,8 +115,7 @@ def _called(name: str, row: FunctionRow, arguments: tuple[Any, ...]) -> Any:
     except BaseException as error:  # the package's code may even raise SystemExit
         if not (package := _package(name)):
             raise
-        what = f"{error} (`{name}` raised {type(error).__name__}){package}"
-        raise FaultError(f"this can't be evaluated: {what}") from error
+        raise FaultError(f"this can't be evaluated: `{name}` raised {described(error)}{package}") from error
 
 
 def _plain(name: str, value: Any) -> Any:

@@ -144,8 +144,11 @@ def _manifest(distribution: Distribution) -> tuple[Feature | None, str]:
 
 
 def described(error: BaseException) -> str:
-    """Return the type and the message of an error, such as `KeyError: 'name'`."""
-    return f"{type(error).__name__}: {error}"
+    """Return the type and the message of an error, such as `KeyError: 'name'`; the type alone if `str` fails."""
+    try:
+        return f"{type(error).__name__}: {error}"
+    except Exception:  # raised by the `__str__` of a package's error
+        return type(error).__name__
 
 
 def _repeated(features: tuple[Feature, ...], installed: Mapping[str, Distribution]) -> Iterator[FeatureFault]:

@@ -128,8 +128,14 @@ def faulty(feature: Feature, message: str) -> LumenError:
 
 
 def shown(value: object) -> str:
-    """Return the `repr` of a value for a message, cut if it is longer than 80 characters."""
-    text = repr(value)
+    """Return the `repr` of a value for a message, cut if it is longer than 80 characters.
+
+    If the `__repr__` of a package's object fails, the type is returned.
+    """
+    try:
+        text = repr(value)
+    except Exception:
+        text = f"<{type(value).__name__}>"
     return text if len(text) <= 80 else f"{text[:77]}…"
 
 

@@ -15,6 +15,7 @@ from lumen.language.commands import Do
 from lumen.language.sections import section_of
 from lumen.ports import SkillPerformer
 from lumen.project.added_verbs import time_taken
+from lumen.project.broken_features import shown
 from lumen.project.schema import faults
 from lumen.robot.command_checks import added_verb, check_arguments
 from lumen.upkeep.threads import WatchedThread
@@ -185,7 +186,7 @@ class RunningSkill:
             result, failure = {}, str(error)
         except BaseException as error:  # the watched thread would begin the verb again
             _log.exception("the performer of `%s` failed", self.skill)
-            result, failure = {}, f"`{self.skill}` failed: {error!r}"
+            result, failure = {}, f"`{self.skill}` failed: {shown(error)}"
         with self._changed:
             self.result, self._failure, self._over = result, failure, True
             self._changed.notify_all()

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from lumen.errors import BusError, LumenError, ModuleError, ProjectError, RobotError, UsageError
-from lumen.feature import rows
+from lumen.feature import described, rows
 from lumen.language.diagnostics import Severity
 from lumen.language.projects import Project
 from lumen.project.broken_features import called, package_at_fault
@@ -74,7 +74,7 @@ class Failures:
                     if wait := called(feature, where, self._failure(error, robots)):
                         self._waiting.append(wait)
                 except Exception as other:
-                    self._tell(f"no alert could be sent: {other!r}")
+                    self._tell(f"no alert could be sent: {described(other)}")
         if isinstance(error, OUTSIDE):
             for robot in robots:
                 self._directories[robot].records.annul()
