@@ -95,12 +95,12 @@ def test_an_unknown_condition_is_named() -> None:
     ("when", "wrong"), [("brian", "brian"), ("brain:NAO", "brain:NAO"), ("role", "role"), ("whole role:", "role:")]
 )
 def test_a_row_with_an_unknown_condition_is_refused(when: str, wrong: str) -> None:
-    [fault] = wrong_rows(Feature("a", parts=(PartRow("a", Phase.SERVE, "", when),)))
+    [fault] = wrong_rows(Feature("a", parts=(PartRow("a", Phase.SERVE, "a:make", when),)))
     assert f"the part `a` has the unknown condition `{wrong}`: use whole" in fault
 
 
 def test_a_row_after_itself_is_refused() -> None:
-    [fault] = wrong_rows(Feature("a", parts=(PartRow("a", Phase.SERVE, "", after="a"),)))
+    [fault] = wrong_rows(Feature("a", parts=(PartRow("a", Phase.SERVE, "a:make", after="a"),)))
     assert "the part `a` comes after itself" in fault
 
 

@@ -67,3 +67,56 @@ def test_a_value_without_a_repr_is_named_by_its_type() -> None:
             raise ValueError
 
     assert shown(Odd()) == "<Odd>"
+
+
+@for_each(
+    ("row", "fault"),
+    [
+        (
+            "subcommands={'odd': Subcommand('', 'faulty_code')}",
+            "a row of `subcommands` of its manifest has `summary=''`, which is empty",
+        ),
+        (
+            "verbs={'odd': VerbRow(' ')}",
+            "a row of `verbs` of its manifest has `performer=' '`, which is empty",
+        ),
+        (
+            "robots={'bot': RobotRow(options=(RobotOption('zap', 'X', 7),))}",
+            "a row of `robots` of its manifest has `help=7`, which is no str",
+        ),
+    ],
+)
+def test_a_row_without_a_needed_text_is_a_fault_of_its_manifest(
+    row: str, fault: str, installed: Installed, hall: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    installed.write("faulty", MANIFEST.format(row=row))
+    assert main([]) == 2
+    assert main(["lint"]) == 0
+    assert FAULT + fault in capsys.readouterr().out
+
+
+@for_each(
+    ("row", "words", "shown"),
+    [
+        ("subcommands={'odd': Subcommand('be 100% odd (%s)', 'faulty_code')}", ["--help"], "be 100% odd (%s)"),
+        ("subcommands={'odd': Subcommand('be odd', 'faulty_code')}", ["odd", "--help"], "is 100% odd, by default 3"),
+        ("buses={'box': BusRow('faulty_code:make', ('box://',), '50% box://')}", ["run", "--help"], "50% box://"),
+        (
+            "robots={'bot': RobotRow(options=(RobotOption('zap', 'X', '100% of %(foo)s'),))}",
+            ["run", "--help"],
+            "100% of %(foo)s",
+        ),
+    ],
+)
+def test_the_help_shows_the_texts_of_a_package_with_percent_signs(
+    row: str, words: list[str], shown: str, installed: Installed, capsys: pytest.CaptureFixture[str]
+) -> None:
+    code = (
+        "def configure(parser):\n    parser.add_argument('--zap', default=3, help='{}')\ndef run(options): return 0\n"
+    )
+    helps = "is 100% odd, by default 3"
+    installed.write("faulty", MANIFEST.format(row=row), faulty_code=code.format(helps))
+    with pytest.raises(SystemExit) as raised:
+        main(words)
+    assert raised.value.code == 0
+    assert shown in capsys.readouterr().out

@@ -4,6 +4,7 @@ import argparse
 import os
 import sys
 from collections.abc import Sequence
+from contextlib import suppress
 from typing import Any
 
 from lumen.cli.suggesting import Suggesting
@@ -17,6 +18,14 @@ class Help(argparse.HelpFormatter):
 
     def __init__(self, prog: str) -> None:
         super().__init__(prog, width=_columns() - 2)
+
+    def _expand_help(self, action: argparse.Action) -> str:
+        """Return an option's help; a `%` that names no value of argparse, such as `100% sure`, stays as it is."""
+        text = self._get_help_string(action) or ""
+        with suppress(KeyError, TypeError, ValueError):
+            if "%(" in text:
+                return super()._expand_help(action)
+        return text.replace("%%", "%")
 
 
 def _columns() -> int:

@@ -43,13 +43,17 @@ def wrong_rows(feature: Feature) -> Iterator[str]:
 
 
 def _wrong_fields(row: Any) -> Iterator[str]:
-    """Yield a description of each field of a row whose type differs from the declared one."""
+    """Yield a description of each field whose type differs from the declared one, and of each required empty text."""
     for name, declared in get_type_hints(type(row)).items():
         kind, value = get_origin(declared) or declared, getattr(row, name)
         if isinstance(kind, type) and not isinstance(value, kind):
             yield f"`{name}={value!r}`, which is no {kind.__name__.lower()}"
+        elif kind is str and not value.strip() and name not in row._field_defaults:
+            yield f"`{name}={value!r}`, which is empty"
         elif kind is tuple and (wrong := [each for each in value if not isinstance(each, get_args(declared)[0])]):
             yield f"`{wrong[0]!r}` in `{name}`, which is no {get_args(declared)[0].__name__}"
+        elif kind is tuple:
+            yield from (fault for each in value if isinstance(each, tuple) for fault in _wrong_fields(each))
 
 
 def _fault(row: Any) -> str:
