@@ -120,3 +120,12 @@ def test_the_help_shows_the_texts_of_a_package_with_percent_signs(
         main(words)
     assert raised.value.code == 0
     assert shown in capsys.readouterr().out
+
+
+@for_each("words", [["--version"], ["--help"], ["lint"], []])
+def test_ctrl_c_during_the_import_of_a_manifest_ends_a_command_quietly(
+    words: list[str], installed: Installed, capsys: pytest.CaptureFixture[str]
+) -> None:
+    installed.write("faulty", "raise KeyboardInterrupt")
+    assert main(words) == 130
+    assert capsys.readouterr() == ("", "")
