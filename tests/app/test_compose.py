@@ -8,9 +8,10 @@ import lumen
 from lumen.clock.real import RealClock
 from lumen.errors import UsageError
 from lumen.feature import Feature, PartRow, Phase, wrong_rows
+from lumen.feature.checking import ordered
 from lumen.language.events import Event
 from lumen.run import compose as composing
-from lumen.run.compose import begin, claim, compose, ordered, part_rows, start
+from lumen.run.compose import begin, claim, compose, part_rows, start
 from lumen.run.live_behavior import LiveBehavior
 from lumen.run.parts.brain import BrainPart
 from lumen.run.parts.part import Part

@@ -4,7 +4,9 @@ from pathlib import Path
 
 import pytest
 
+import lumen
 from lumen.cli.main import main
+from lumen.feature import features
 from lumen.project.broken_features import shown
 from tests import ROOT
 from tests.copying import copied_project
@@ -129,3 +131,32 @@ def test_ctrl_c_during_the_import_of_a_manifest_ends_a_command_quietly(
     installed.write("faulty", "raise KeyboardInterrupt")
     assert main(words) == 130
     assert capsys.readouterr() == ("", "")
+
+
+WAITING = MANIFEST.replace("faulty", "{name}").format(
+    name="{name}", row="parts=(PartRow('{part}', Phase.WATCH, 'faulty_code:make', after='{after}'),)"
+)
+
+
+def test_a_package_whose_parts_close_a_circle_is_left_out(
+    installed: Installed, hall: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    code = "def make(services): return None"
+    installed.write("early", WAITING.format(name="early", part="one", after="two"), faulty_code=code)
+    installed.write("faulty", WAITING.format(name="faulty", part="two", after="one"))
+    assert [feature.name for feature in features()][-1] == "early"
+    assert main(["lint"]) == 0
+    assert f"{FAULT}its parts wait for each other: one, two" in capsys.readouterr().out
+    with lumen.open(hall, robot="recording") as exhibition:
+        assert exhibition.run(seconds=1) == pytest.approx(1)
+
+
+@pytest.mark.parametrize("needs", ["7", "'brain'", "(7,)", "None"])
+def test_a_part_with_wrong_needs_is_left_out(needs: str, installed: Installed) -> None:
+    code = f"from lumen.run.parts.part import Part\n\nclass make(Part):\n    needs = {needs}\n"
+    code += "    def __init__(self, services): pass\n"
+    row = "parts=(PartRow('odd', Phase.WATCH, 'faulty_code:make'),)"
+    installed.write("faulty", MANIFEST.format(row=row), faulty_code=code)
+    with lumen.open(ROOT / "examples/minimal", robot="recording") as exhibition:
+        [fault] = exhibition.node.faults
+    assert f"raised TypeError: `needs` of the part is {needs}: write a tuple of names" in fault

@@ -1,6 +1,6 @@
 """Find faults in the manifest of an installed package: rows of a wrong type, and values that no row can have."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, get_args, get_origin, get_type_hints
 
 from lumen.feature.manifest import (
@@ -88,3 +88,23 @@ def _is_condition(text: str) -> bool:
 def kinds() -> Iterator[str]:
     """Yield the names of the kinds of rows: the fields of `Feature` except its name and API."""
     yield from (kind for kind in Feature._fields if kind not in ("name", "api"))
+
+
+def ordered(found: Iterable[PartRow]) -> list[PartRow]:
+    """Return rows sorted by phase, each after the row that its `after` names, and otherwise by name.
+
+    Raises ValueError if rows wait for each other.
+    """
+    waiting = sorted(found, key=lambda row: (row.phase, row.name))
+    names, sorted_rows = {row.name: row.phase for row in waiting}, list[PartRow]()
+    while waiting:
+        done = {row.name for row in sorted_rows}
+        phase = waiting[0].phase
+        free = (row for row in waiting if row.phase == phase and (row.after in done or names.get(row.after) != phase))
+        if (row := next(free, None)) is None:
+            raise ValueError(
+                f"parts wait for each other: {', '.join(row.name for row in waiting if row.phase == phase)}"
+            )
+        waiting.remove(row)
+        sorted_rows.append(row)
+    return sorted_rows

@@ -1,12 +1,12 @@
 """All features: the manifests that come with Lumen and those of installed packages, and their rows."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from functools import cache
 from importlib import import_module
 from typing import Any, NamedTuple
 
 from lumen.distributions import Distribution, distributions
-from lumen.feature.checking import kinds, wrong_rows
+from lumen.feature.checking import kinds, ordered, wrong_rows
 from lumen.feature.manifest import API, Feature
 
 BUILT_IN = (
@@ -118,6 +118,8 @@ def found() -> Found:
         feature, fault = _manifest(distribution)
         if feature and feature.name in names:
             fault = f"its feature has the name `{feature.name}`, as one of {names[feature.name]} has"
+        elif feature and not fault:
+            fault = _unordered([*built_in, *(other for other, _ in others.values()), feature])
         if feature and not fault:
             names[feature.name] = str(distribution)
             others[feature.name] = feature, distribution
@@ -141,6 +143,15 @@ def _manifest(distribution: Distribution) -> tuple[Feature | None, str]:
         raise
     except BaseException as error:  # from code that is not Lumen's: even SystemExit
         return None, f"its manifest `{distribution.manifest}` raised {described(error)}"
+
+
+def _unordered(features: Iterable[Feature]) -> str:
+    """Return the fault of the last of these features if it makes parts wait for each other; empty otherwise."""
+    try:
+        ordered(row for feature in features for row in feature.parts)
+    except ValueError as error:
+        return f"its {error}"
+    return ""
 
 
 def described(error: BaseException) -> str:

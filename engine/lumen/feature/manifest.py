@@ -347,7 +347,10 @@ class PartRow(NamedTuple):
     has that section), `file:NAME` (the project has that file next to lumen.yaml).
     """
     after: str = ""
-    """The part of the same phase after which it comes; empty for the order by name."""
+    """The part of the same phase after which it comes; empty for the order by name.
+
+    A package that makes parts wait for each other is left out.
+    """
     claimed: bool = False
     """True if the part is made only after the process has claimed the robot on the bus.
 

@@ -2,12 +2,13 @@
 
 import logging
 import time
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from contextlib import ExitStack
 from functools import cache
 
 from lumen.errors import LumenError
 from lumen.feature import Feature, PartRow, distribution_of, resolve, rows
+from lumen.feature.checking import ordered
 from lumen.project.broken_features import blamed
 from lumen.run.claiming import CLAIM_INTERVAL
 from lumen.run.parts.added import AddedPart
@@ -102,21 +103,3 @@ def _feature_of(row: PartRow) -> Feature | None:
 def part_rows() -> tuple[PartRow, ...]:
     """Return the rows of all features in the order in which their parts are made and ticked."""
     return tuple(ordered([row for _, row in rows("parts")]))
-
-
-def ordered(found: Iterable[PartRow]) -> list[PartRow]:
-    """Return rows sorted by phase, each after the row that its `after` names, and otherwise by name.
-
-    Raises ValueError if rows wait for each other.
-    """
-    waiting = sorted(found, key=lambda row: (row.phase, row.name))
-    names, sorted_rows = {row.name: row.phase for row in waiting}, list[PartRow]()
-    while waiting:
-        done = {row.name for row in sorted_rows}
-        phase = waiting[0].phase
-        free = (row for row in waiting if row.phase == phase and (row.after in done or names.get(row.after) != phase))
-        if (row := next(free, None)) is None:
-            raise ValueError(f"parts wait for each other: {', '.join(row.name for row in waiting)}")
-        waiting.remove(row)
-        sorted_rows.append(row)
-    return sorted_rows

@@ -29,8 +29,8 @@ class AddedPart(Part, Observer):
     def __init__(self, own: Part, feature: Feature, row: PartRow, stopped: Callable[[str, str], None]) -> None:
         if not isinstance(own, Part):
             raise TypeError(f"`{row.make}` returned {shown(own)}, which is no part")
-        if isinstance(own.needs, str):
-            raise TypeError(f"`needs` of the part is the text {own.needs!r}: write a tuple of names")
+        if not (isinstance(own.needs, tuple | list) and all(isinstance(each, str) for each in own.needs)):
+            raise TypeError(f"`needs` of the part is {shown(own.needs)}: write a tuple of names")
         if own.watches and not isinstance(own, Observer):
             kind = type(own).__name__
             raise TypeError(f"the part {kind} watches the behaviour: derive it from Observer, too")
