@@ -25,6 +25,8 @@ def misnamed_in(root: Path, folder: str) -> Iterator[Misnamed]:
     """Yield files of a project folder with a mistyped ending, such as `.yml`, and folders with capital letters."""
     endings, listed = endings_in(folder), listed_in(root, folder)
     for name in listed:
+        if endings and name.endswith(endings) and not name.startswith("."):
+            continue  # read, as nearly all files are
         path = f"{folder}/{name}" if folder else name
         lowered = path.lower()
         if lowered != path and lowered in ALL_FOLDERS and not (root / lowered).exists():

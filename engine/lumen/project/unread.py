@@ -2,6 +2,7 @@
 
 import os
 from collections.abc import Callable, Collection, Iterator
+from functools import lru_cache
 from pathlib import Path, PurePosixPath
 from typing import NamedTuple
 
@@ -178,7 +179,6 @@ def _message_of(file: str) -> str:
 def _at_root(root: Path, look: Callable[[Path], object]) -> Iterator[Unread]:
     """Yield stray schemas, and the first file of each folder of the root with nearly the name of a project's folder."""
     look(root)
-    known = {PurePosixPath(path).name: path for path in (*reversed(tuple(KINDS)), *PROJECT_FOLDERS, DRIVERS_FOLDER)}
     schemas = {f"{kind}{_SCHEMA_ENDING}" for kind in FILE_KINDS}
     for name in listed_in(root, _SCHEMAS):
         if name.endswith(_SCHEMA_ENDING) and name not in schemas:
@@ -187,11 +187,19 @@ def _at_root(root: Path, look: Callable[[Path], object]) -> Iterator[Unread]:
     for name in listed_in(root, ""):
         if name in PROJECT_FOLDERS or name in MISTAKEN_FOLDERS or name == DRIVERS_FOLDER or name.startswith("."):
             continue
-        if name.lower() in ALL_FOLDERS or not os.path.isdir(root / name) or not (near := nearest(name, known)):
+        if name.lower() in ALL_FOLDERS or not os.path.isdir(root / name) or not (meant := _folder_named_like(name)):
             continue
-        endings = (".py",) if near == DRIVERS_FOLDER else endings_in(known[near]) or (".json",)
+        endings = (".py",) if meant == DRIVERS_FOLDER else endings_in(meant) or (".json",)
         if first := _first(root, name, endings, 1, look):
-            yield Unread(first, f"files in {name}/ are not read", f"did you mean `{known[near]}/`?")
+            yield Unread(first, f"files in {name}/ are not read", f"did you mean `{meant}/`?")
+
+
+@lru_cache  # a folder of the root is compared again at each check
+def _folder_named_like(name: str) -> str:
+    """Return the folder of a project with nearly this name; empty if there is none."""
+    known = {PurePosixPath(path).name: path for path in (*reversed(tuple(KINDS)), *PROJECT_FOLDERS, DRIVERS_FOLDER)}
+    near = nearest(name, known)
+    return known[near] if near else ""
 
 
 def _robot_of(folder: str) -> str:
