@@ -13,6 +13,7 @@ import shutil
 import signal
 import socket
 import threading
+from collections.abc import Iterator
 from contextlib import suppress
 from itertools import count
 from typing import Any
@@ -188,6 +189,17 @@ def given(name: str) -> Any:
     if "fail" in answer:
         pytest.fail(answer["fail"], pytrace=False)
     return answer["given"]
+
+
+@pytest.fixture
+def patient_bus() -> Iterator[None]:
+    """A bus on RabbitMQ that waits for a slow broker; a test of one of these limits sets it again."""
+    limits = ("consumer.BIND_TIMEOUT", "polled.BROKER_TIMEOUT", "broker.BROKER_TIMEOUT", "amqp.CLOSE_TIMEOUT")
+    with pytest.MonkeyPatch.context() as patch:  # of its own: a test may undo its patches
+        for name in limits:
+            patch.setattr(f"lumen.features.rabbitmq.{name}", HANG)
+        patch.setattr("lumen.features.rabbitmq.broker.HEARTBEAT_INTERVAL", int(HANG))
+        yield
 
 
 @pytest.fixture(scope="module")

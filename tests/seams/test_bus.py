@@ -15,6 +15,8 @@ from lumen.language.routes import Carried, Direction, Route
 from lumen.ports import Bus
 from tests.waiting import HANG, Collector
 
+pytestmark = pytest.mark.usefixtures("patient_bus")
+
 KINDS = ["memory", "local", pytest.param("amqp", marks=pytest.mark.broker)]
 
 Connect = Callable[[], Bus]

@@ -11,10 +11,13 @@ import pytest
 from pika.heartbeat import HeartbeatChecker
 
 from lumen.bus import Bus, BusError, Message, connect
+from lumen.features.rabbitmq import amqp
 from lumen.features.rabbitmq.outbox import OutgoingMessage
 from tests.rabbitmq import RabbitMQ
 from tests.relay import Relay
 from tests.waiting import HANG, Collector, finished, threads, until
+
+pytestmark = pytest.mark.usefixtures("patient_bus")
 
 
 @pytest.fixture
@@ -80,14 +83,14 @@ def test_on_the_wire_it_is_json_on_amq_topic(bus: Bus, stranger: Any) -> None:
     queue = stranger.queue_declare("", exclusive=True).method.queue
     stranger.queue_bind(queue, "amq.topic", "avatar.NAO.data.*")
     body = {"name": "Budi", "text": "selamat siang – 你好"}
-    bus.publish("avatar.NAO.data.sonar", body, reply_to="lumen.me", correlation_id="7", ttl=2.0)
+    bus.publish("avatar.NAO.data.sonar", body, reply_to="lumen.me", correlation_id="7", ttl=HANG)
     bus.close()
     method, properties, data = stranger.basic_get(queue, auto_ack=True)
     assert json.loads(data.decode("utf-8")) == body
     assert "你好".encode() in data
     assert (method.routing_key, properties.content_type) == ("avatar.NAO.data.sonar", "application/json")
     assert (properties.reply_to, properties.correlation_id) == ("lumen.me", "7")
-    assert 1500 < int(properties.expiration) <= 2000
+    assert 500 * HANG < int(properties.expiration) <= 1000 * HANG
 
 
 @pytest.mark.once
@@ -246,7 +249,10 @@ def _subscriptions(bus: Any) -> list[Any]:
     return list(bus._transport.consumer.subscriptions())
 
 
-def test_closing_while_the_broker_is_away_ends_and_tells_what_is_unsent(caplog: pytest.LogCaptureFixture) -> None:
+def test_closing_while_the_broker_is_away_ends_and_tells_what_is_unsent(
+    caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(amqp, "CLOSE_TIMEOUT", 1.0)
     broker = RabbitMQ()
     broker.start()
     bus = connect(broker.url)

@@ -16,6 +16,8 @@ from tests.rabbitmq import RabbitMQ
 from tests.relay import Relay
 from tests.waiting import HANG, Collector, until
 
+pytestmark = pytest.mark.usefixtures("patient_bus")
+
 Open = Callable[..., Bus]
 
 

@@ -17,6 +17,8 @@ from tests.rabbitmq import RabbitMQ
 from tests.relay import Relay
 from tests.waiting import HANG, Collector, until
 
+pytestmark = pytest.mark.usefixtures("patient_bus")
+
 WAYS = {
     "lumen.fault.command": Route(
         "command", "lumen.fault.command", Direction.IN, carried=Carried.COMMAND, must_arrive=True, ttl=600.0, most=1e6

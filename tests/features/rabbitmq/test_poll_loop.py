@@ -4,10 +4,13 @@ import threading
 from collections.abc import Iterator
 from selectors import EVENT_READ, EVENT_WRITE
 from socket import socketpair
+from types import SimpleNamespace
 
 import pytest
 
+from lumen.features.rabbitmq import poll_loop
 from lumen.features.rabbitmq.poll_loop import PollLoop
+from tests.waiting import finished, until
 
 
 @pytest.fixture
@@ -25,9 +28,8 @@ def test_what_another_thread_asks_for_ends_the_waiting_and_is_called_here(loop: 
     called: list[int] = []
     thread = threading.Thread(target=lambda: loop.add_callback(lambda: called.append(threading.get_ident())))
     thread.start()
-    while not called:
-        turned(loop)
-    thread.join()
+    until(lambda: called, meanwhile=lambda: turned(loop))
+    finished(thread)
     turned(loop, 0.0)
     assert called == [threading.get_ident()]
     assert loop.wait(0.0) == [], "nothing wakes it any more"
@@ -47,16 +49,20 @@ def test_a_callback_that_asks_again_is_called_in_the_next_turn(loop: PollLoop) -
     assert called == ["first", "second"]
 
 
-def test_timers_are_called_in_their_order_and_not_when_they_were_removed(loop: PollLoop) -> None:
+def test_timers_are_called_in_their_order_and_not_when_they_were_removed(
+    loop: PollLoop, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    now = 100.0
+    monkeypatch.setattr(poll_loop, "time", SimpleNamespace(monotonic=lambda: now))
     called: list[str] = []
-    loop.call_later(0.02, lambda: called.append("late"))
+    loop.call_later(2.0, lambda: called.append("late"))
     removed = loop.call_later(0.0, lambda: called.append("removed"))
-    loop.call_later(0.01, lambda: called.append("soon"))
+    loop.call_later(1.0, lambda: called.append("soon"))
     loop.remove_timeout(removed)
     loop.remove_timeout(removed)
-    while len(called) < 2:
+    for now, due in ((101.0, ["soon"]), (102.0, ["soon", "late"])):  # noqa: B007  `now` is what the clock shows
         turned(loop)
-    assert called == ["soon", "late"]
+        assert called == due
 
 
 def test_a_timer_that_was_removed_ends_no_waiting(loop: PollLoop) -> None:
