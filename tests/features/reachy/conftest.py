@@ -2,7 +2,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from lumen.features.reachy import link
+from lumen.features.reachy import link, skills
 from lumen.language.projects import Project
 from tests.features.reachy.driving import Driven, reachy_project
 from tests.features.reachy.fake import FakeDaemon
@@ -16,8 +16,9 @@ def project() -> Project:
 
 @pytest.fixture
 def patient(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A daemon on a crowded machine may be silent for longer than on a robot, before it counts as lost."""
+    """A daemon on a crowded machine may be silent, and the head late, for longer than on a robot."""
     monkeypatch.setattr(link, "SILENCE", HANG)
+    monkeypatch.setattr(skills, "GRACE", HANG)
 
 
 @pytest.fixture

@@ -2,8 +2,9 @@
 
 import os
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
+from typing import Any
 
 import lumen
 from lumen.features.reachy.robot import ReachyRobot
@@ -12,6 +13,7 @@ from lumen.language.projects import Project
 from lumen.ports import Joints, RobotCommand, Sense
 from lumen.project.chosen_model import MODEL_VARIABLE
 from tests import ROOT
+from tests.features.reachy.fake import joints_in
 from tests.waiting import until
 
 
@@ -29,11 +31,18 @@ def reachy_project() -> Project:
 
 
 class Driven:
-    """The robot at `url`; `events` are its answers and what it noticed."""
+    """The robot at `url`; `events` are its answers and what it noticed, `sent` the targets that it gave the link."""
 
     def __init__(self, project: Project, url: str, voice: str = "none", root: Path = ROOT) -> None:
         self.robot = ReachyRobot(project.body, url, time.monotonic, voice=voice, root=root)
         self.events: list[Event] = []
+        self.sent: list[dict[str, float]] = []
+        self._link_send = self.robot._link.send
+        self.robot._link.send = self._send  # type: ignore[method-assign]
+
+    def _send(self, target: Mapping[str, Any]) -> None:
+        self.sent.append(joints_in(target))
+        self._link_send(target)
 
     def tick(self) -> None:
         self.events += self.robot.poll()

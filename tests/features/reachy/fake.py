@@ -146,9 +146,7 @@ class FakeDaemon:
         message = json.loads(text)
         if message.get("type") != "set_full_target":
             return
-        rows = [message["head"][i : i + 4] for i in range(0, 16, 4)]
-        right, left = message["antennas"]
-        found = {**head_joints(rows), BODY: message["body_yaw"], LEFT: left, RIGHT: right}
+        found = joints_in(message)
         self.targets.append((time.monotonic(), found))
         if not self.moves:
             self.joints = found
@@ -189,6 +187,13 @@ class FakeDaemon:
                     for connection in list(self._sockets):
                         with suppress(OSError):
                             connection.sendall(_frame(text))
+
+
+def joints_in(message: Mapping[str, Any]) -> dict[str, float]:
+    """Return the joints in a message with a target."""
+    rows = [message["head"][i : i + 4] for i in range(0, 16, 4)]
+    right, left = message["antennas"]
+    return {**head_joints(rows), BODY: message["body_yaw"], LEFT: left, RIGHT: right}
 
 
 def _pose(body: Mapping[str, Any], prefix: str = "") -> dict[str, float]:
