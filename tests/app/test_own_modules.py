@@ -282,12 +282,14 @@ def test_a_program_that_hangs_is_killed_and_started_again(project: Project, time
 # The program
 
 
-def test_a_program_shows_that_it_lives_once_per_period(monkeypatch: pytest.MonkeyPatch, time: Time) -> None:
+def test_a_program_shows_that_it_lives_once_per_period(
+    monkeypatch: pytest.MonkeyPatch, time: Time, tmp_path: Path
+) -> None:
     monkeypatch.setattr(joining, "time", Mock(monotonic=time))
     monkeypatch.setattr(joining, "signal", Mock())
-    bus, seen = MemoryBus("joined"), Collector()
+    bus, seen = MemoryBus(str(tmp_path)), Collector()
     bus.subscribe("lumen.NAO.presence", seen)
-    with JoinedModule("mood", "NAO", MemoryBus("joined"), None) as module:
+    with JoinedModule("mood", "NAO", MemoryBus(str(tmp_path)), None) as module:
         module.alive()
         module.alive()
         time.now += PRESENCE_PERIOD

@@ -21,8 +21,8 @@ pytestmark = pytest.mark.rest  # expensive
 
 
 @pytest.fixture
-def bus() -> Iterator[Bus]:
-    bus = connect("memory://causes", sender="ears")
+def bus(tmp_path: Path) -> Iterator[Bus]:
+    bus = connect(f"memory://{tmp_path}", sender="ears")
     yield bus
     bus.close()
 
@@ -70,10 +70,10 @@ def test_a_tour_knows_the_cause_of_each_event(tour: Tour) -> None:
     assert len({message.id for message in said.messages}) == len(said.messages)
 
 
-def test_what_a_step_publishes_names_the_step(bus: Bus) -> None:
+def test_what_a_step_publishes_names_the_step(bus: Bus, tmp_path: Path) -> None:
     said = Collector()
     bus.subscribe("museum.lamp.set", said)
-    with lumen.open("examples/museum", robot="recording", bus="memory://causes", story="visit") as show:
+    with lumen.open("examples/museum", robot="recording", bus=f"memory://{tmp_path}", story="visit") as show:
         show.run()
         steps = show.loop.runtime.steps
     numbers = [int(message.cause.removeprefix("step ")) for message in said.messages]
@@ -82,9 +82,9 @@ def test_what_a_step_publishes_names_the_step(bus: Bus) -> None:
     assert 1 <= numbers[0] <= numbers[-1] <= steps
 
 
-def test_a_message_of_a_module_is_the_cause(bus: Bus) -> None:
+def test_a_message_of_a_module_is_the_cause(bus: Bus, tmp_path: Path) -> None:
     steps: list[Step] = []
-    with lumen.open(robot="recording", bus="memory://causes") as show:
+    with lumen.open(robot="recording", bus=f"memory://{tmp_path}") as show:
         show.observe(steps.append)
         show.tick()
         bus.publish(

@@ -30,14 +30,12 @@ def test_it_is_taken_between_two_visits_proved_and_in_the_folder_then(
     signer = Signer(key)
     root = project(tmp_path / "house", signer.public)
     files = changed(root)
-    loaded, bus, heard, numbers = load(root), MemoryBus("fleet-taking"), Collector(), Collector()
+    loaded, bus, heard, numbers = load(root), MemoryBus(str(tmp_path)), Collector(), Collector()
     bus.subscribe("fleet.numbers.itb.nao1", numbers)
     bus.subscribe("fleet.presence.itb.nao1", heard)
     directory = RunDirectory(root)
     setup = set_up("recording", loaded, "max", None)
-    show = Exhibition(
-        Plan(loaded, setup, MemoryBus("fleet-taking"), options={"directory": directory, "reload": "auto"})
-    )
+    show = Exhibition(Plan(loaded, setup, MemoryBus(str(tmp_path)), options={"directory": directory, "reload": "auto"}))
     directory.begin(loaded, read_files(root))
     try:
         show.start()

@@ -11,7 +11,7 @@ from pythonosc.dispatcher import Dispatcher
 from pythonosc.osc_server import ThreadingOSCUDPServer
 from pythonosc.udp_client import SimpleUDPClient
 
-from lumen.features.show import health
+from lumen.features.show import dmx, health
 from lumen.features.show.osc import OscDevice
 from lumen.features.show.settings import AddressMapping, DmxLink, OscLink
 from lumen.language.projects import Project
@@ -107,10 +107,11 @@ def _moved(sender: SimpleUDPClient, moved: Collector) -> bool:
 
 
 @pytest.mark.network
-def test_a_lamp_by_dmx(museum: Callable[..., Project], stand: Make) -> None:
+def test_a_lamp_by_dmx(museum: Callable[..., Project], stand: Make, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(dmx, "PORT", free_port())
     link = DmxLink(7, "127.0.0.1", {"lamp": {"level": 1, "on": 512}})
     came, ended = list[Any](), list[str]()
-    receiver = sacn.sACNreceiver(bind_address="127.0.0.1")
+    receiver = sacn.sACNreceiver(bind_address="127.0.0.1", bind_port=dmx.PORT)
     receiver.register_listener("universe", came.append, universe=7)
     receiver.register_listener("availability", lambda universe, changed: ended.append(changed))
     receiver.start()
@@ -133,12 +134,13 @@ def test_a_lamp_by_dmx(museum: Callable[..., Project], stand: Make) -> None:
 
 
 def test_dmx_is_kept_alive_and_darkens_nothing_before_its_first_message(
-    museum: Callable[..., Project], stand: Make
+    museum: Callable[..., Project], stand: Make, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as receiver:
-        receiver.bind(("127.0.0.3", 5568))
+        receiver.bind(("127.0.0.1", 0))
+        monkeypatch.setattr(dmx, "PORT", receiver.getsockname()[1])
         receiver.setblocking(False)
-        here = stand(museum(dmx=DmxLink(1, "127.0.0.3", {"lamp": {"level": 1}})))
+        here = stand(museum(dmx=DmxLink(1, "127.0.0.1", {"lamp": {"level": 1}})))
         added(here)
         here.settle()
         with pytest.raises(BlockingIOError):
