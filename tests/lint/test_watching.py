@@ -12,6 +12,7 @@ import pytest
 from tests import ROOT
 from tests.copying import copied_project
 from tests.guarded import PIPE, Guarded
+from tests.saving import save
 from tests.waiting import HANG
 
 HERE = Path(__file__).parent
@@ -35,13 +36,6 @@ def watching(project: Path) -> Iterator[Guarded[str]]:
         yield process
         deadline.cancel()
         process.kill()
-
-
-def save(file: Path, text: str) -> None:
-    """Save the file in one step, so that lint never reads half of it."""
-    draft = file.with_name(f".{file.name}.new")
-    draft.write_text(text)
-    draft.replace(file)
 
 
 def answer(process: Guarded[str]) -> str:

@@ -23,6 +23,7 @@ from lumen.run import claiming, node, presence, services
 from lumen.run.recovery.run_directory import RunDirectory
 from tests.features.alerts.halls import Hall
 from tests.features.alerts.servers import Web
+from tests.saving import save
 from tests.tables import for_each
 from tests.waiting import until
 
@@ -118,7 +119,7 @@ def test_a_broker_that_is_short_of_memory(hall: Hall) -> None:
 def test_files_that_are_refused(hall: Hall) -> None:
     hall.whole()
     tour = hall.folder / "behaviors/tour.yaml"
-    tour.write_text(tour.read_text().replace("onDone: idle", "onDone: nowhere"))
+    save(tour, tour.read_text().replace("onDone: idle", "onDone: nowhere"))
     assert hall.told("refused") == (
         "the saved files were refused: behaviors/tour.yaml:8:13 unknown-state; the exhibition continues unchanged"
     )
@@ -402,7 +403,7 @@ def test_each_kind_is_shown_here() -> None:
 def test_saved_files_say_who_is_told_from_now_on(hall: Hall, web: Callable[..., Web]) -> None:
     shown, other = hall.whole(), web()
     main_file = hall.folder / "lumen.yaml"
-    main_file.write_text(main_file.read_text().replace(hall.web.url, other.url))
+    save(main_file, main_file.read_text().replace(hall.web.url, other.url))
     hall.until(lambda: shown.reloader and shown.reloader.last)
     assert shown.reloader
     report = shown.reloader.last

@@ -19,11 +19,10 @@ from selenium.common.exceptions import WebDriverException
 from lumen.run.presence import LOST_AFTER
 from tests.features.console.chromium import Chromium
 from tests.features.console.house import ROBOT, House
-from tests.waiting import until
+from tests.saving import save
+from tests.waiting import HANG, until
 
 HEARD, FACE = "lumen.NAO.audio.speech.recognition", "lumen.NAO.visual.face.detection"
-WAIT = 180.0
-"""Seconds that a page may need on a busy machine."""
 LOOK = 0.25
 """Seconds between two looks at a page."""
 HALF_HOUR = 1800.0
@@ -65,11 +64,11 @@ class Operator:
             trouble()
             return
         self.looks_at(next(self._pages))
-        until(lambda: self.shown() and "live" in self._chromium.find(".connection").text, WAIT, every=LOOK)
+        until(lambda: self.shown() and "live" in self._chromium.find(".connection").text, HANG, every=LOOK)
         self._chromium.run(ALARMS)
         began = time()
         trouble()
-        until(lambda: self._chromium.run("return globalThis.alarmed"), WAIT, every=LOOK)
+        until(lambda: self._chromium.run("return globalThis.alarmed"), HANG, every=LOOK)
         self.times[kind].append(float(self._chromium.run("return alarmed")) - began - after)
         self.looks_at()
 
@@ -85,7 +84,7 @@ class Operator:
             return all(text in shown for text in texts)
 
         try:
-            until(seen, WAIT, every=LOOK)
+            until(seen, HANG, every=LOOK)
         except AssertionError:
             missing = [text for text in texts if text not in shown]
             raise AssertionError(f"{missing} is not seen on\n{shown[:3000]}") from None
@@ -94,14 +93,14 @@ class Operator:
         return str(self._chromium.run(ALL))
 
     def sees_no(self, selector: str) -> None:
-        until(lambda: not self._chromium.all(selector), WAIT, every=LOOK)
+        until(lambda: not self._chromium.all(selector), HANG, every=LOOK)
 
     def sees_now(self, selector: str) -> bool:
         return bool(self._chromium.all(selector))
 
     def sees_it_in(self, state: str) -> None:
         """Wait until the page shows that innermost state as active."""
-        until(lambda: self.sees_it_now_in(state), WAIT, every=LOOK)
+        until(lambda: self.sees_it_now_in(state), HANG, every=LOOK)
 
     def sees_it_now_in(self, state: str) -> bool:
         return state in self._chromium.run(STATES)
@@ -114,12 +113,12 @@ class Operator:
                 return False
             return True
 
-        until(pressed, WAIT, every=LOOK)
+        until(pressed, HANG, every=LOOK)
 
     def rests(self, *outcomes: str) -> None:
         self._chromium.quiet()
         self._chromium.rest()
-        until(lambda: any(outcome in self._chromium.said() for outcome in outcomes), WAIT, every=LOOK)
+        until(lambda: any(outcome in self._chromium.said() for outcome in outcomes), HANG, every=LOOK)
 
     def lets_go_on(self) -> None:
         self.presses("button.resume")
@@ -145,14 +144,14 @@ def a_bad_edit(house: House, operator: Operator) -> None:
     tour = house.folder / "behaviors" / "tour.yaml"
     good = tour.read_text("utf-8")
     assert LEFT in good
-    tour.write_text(good.replace(LEFT, LEFT.replace("goodbye", "godbye")), "utf-8")
+    save(tour, good.replace(LEFT, LEFT.replace("goodbye", "godbye")))
     line = good[: good.index(LEFT)].count("\n") + 1
     operator.sees("refused", f"behaviors/tour.yaml:{line}", "The robot continues with the previous files")
     operator.looks_at("/files")
     operator.sees(
         "there is no state `godbye`", "did you mean `goodbye`?", "The robot continues with the previous files"
     )
-    tour.write_text(good, "utf-8")
+    save(tour, good)
     operator.sees("No findings.", "The saved files are the ones that run")
     operator.looks_at()
 
@@ -213,7 +212,7 @@ def begin(house: House, operator: Operator) -> None:
             house.send(HEARD, {"result": "my name is Budi", "language": "en"})
         return "Visitor: Budi" in operator.shown()
 
-    until(introduced, WAIT, every=LOOK)
+    until(introduced, HANG, every=LOOK)
     operator.sees("my name is Budi")
 
 

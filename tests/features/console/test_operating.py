@@ -11,6 +11,7 @@ from tests.features.console.conftest import Hosted
 from tests.features.console.pages import Served
 from tests.features.console.viewer import PRESSES, Viewer
 from tests.fetched import fetched
+from tests.saving import save
 from tests.waiting import HANG, until
 
 pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("operating")]
@@ -136,13 +137,13 @@ def test_operators_see_that_files_are_refused_and_neither_findings_nor_paths(
     sign_in(viewer, console, Role.OPERATOR)
     behavior = mine.root / "behaviors" / "mine.yaml"
     try:
-        behavior.write_text(MINE.replace("target: stage", "target: stagge"))
+        save(behavior, MINE.replace("target: stage", "target: stagge"))
         viewer.driver.get(console + "robot/NAO/files")
         viewer.shows("refused", ".saved")
         viewer.shows("is shown to authors", ".saved")
         assert [sign for sign in (".yaml", "stagge") if sign in viewer.text("main")] == []
     finally:
-        behavior.write_text(MINE)
+        save(behavior, MINE)
 
 
 @pytest.mark.once
@@ -272,15 +273,15 @@ def test_refused_files_are_not_said_to_be_the_ones_that_run(viewer: Viewer, hall
     viewer.shows("The saved files are the ones that run.", ".changes")
     try:
         story.parent.mkdir()
-        story.write_text("title: Fails\nsteps: [{wait: 1s}, {expect: {state: stage}}]\n")
+        save(story, "title: Fails\nsteps: [{wait: 1s}, {expect: {state: stage}}]\n")
         viewer.shows("story `fails` added", ".changes")
         viewer.shows("refused", ".saved")
         story.unlink()
-        behavior.write_text(MINE.replace("target: stage", "target: stagge"))
+        save(behavior, MINE.replace("target: stage", "target: stagge"))
         viewer.shows("Not known: the saved files were not compared with those that run.", ".changes")
     finally:
         story.unlink(missing_ok=True)
-        behavior.write_text(MINE)
+        save(behavior, MINE)
     viewer.shows("The saved files are the ones that run.", ".changes")
 
 

@@ -11,6 +11,7 @@ from tests.features.console.conftest import Hosted
 from tests.features.console.pages import Served
 from tests.features.console.test_conversation import violations
 from tests.features.console.viewer import Viewer
+from tests.saving import save
 from tests.waiting import HANG, until
 
 pytestmark = pytest.mark.slow
@@ -152,7 +153,7 @@ def test_a_changed_text_is_shown_before_and_after_with_its_line(viewer: Viewer, 
     text = tour.read_text("utf-8")
     line = text[: text.index(SORRY)].count("\n") + 1
     viewer.open(served.console.address, "robot/NAO/files", ready=".saved", mode="author")
-    tour.write_text(text.replace(SORRY, LATER), "utf-8")
+    save(tour, text.replace(SORRY, LATER))
     viewer.shows("See you tomorrow, perhaps", ".changes ins")
     viewer.shows("Goodbye", ".changes del")
     places = viewer.text(".changes .place")
@@ -166,7 +167,7 @@ def test_a_roll_back_restores_the_file_and_names_the_newer_one(viewer: Viewer, o
     tour = hosted.root / "behaviors" / "tour.yaml"
     text = tour.read_text("utf-8")
     viewer.open(served.console.address, "robot/NAO/files", ready=".saved", mode="author")
-    tour.write_text(text.replace(SORRY, LATER), "utf-8")
+    save(tour, text.replace(SORRY, LATER))
     viewer.shows("See you tomorrow, perhaps", ".changes ins")
     viewer.click(".saved [data-verb=apply]")
     viewer.click("dialog .strong")
@@ -176,7 +177,7 @@ def test_a_roll_back_restores_the_file_and_names_the_newer_one(viewer: Viewer, o
     viewer.click("dialog .strong")
     viewer.shows("behaviors/tour.yaml is as it was before; the newer version is in .lumen/rolled-back/", ".saved")
     assert tour.read_text("utf-8") == text
-    (hosted.root / "knowledge" / "love.yaml").write_text(LOVE)
+    save(hosted.root / "knowledge" / "love.yaml", LOVE)
     viewer.shows("love", ".changes")
     assert "See you tomorrow" not in viewer.text(".changes")
 
@@ -185,7 +186,7 @@ def test_files_that_are_tried_are_kept_during_the_visit(viewer: Viewer, own: tup
     hosted, served = own
     tour = hosted.root / "behaviors" / "tour.yaml"
     viewer.open(served.console.address, "robot/NAO/files", ready=".saved", mode="author")
-    tour.write_text(tour.read_text("utf-8").replace(SORRY, LATER), "utf-8")
+    save(tour, tour.read_text("utf-8").replace(SORRY, LATER))
     viewer.shows("See you tomorrow, perhaps", ".changes ins")
     viewer.click(".saved [data-verb=try]")
     viewer.shows("These files are tried for one visitor", ".file-actions")
@@ -276,7 +277,7 @@ def test_files_tell_an_author_what_buttons_do_and_in_any_mode_what_changed(
     tour = hosted.root / "behaviors" / "tour.yaml"
     viewer.open(served.console.address, "robot/NAO/files", ready=".saved", mode="author")
     assert "Nothing waits" in viewer.text(".file-actions")
-    tour.write_text(tour.read_text("utf-8").replace(SORRY, LATER), "utf-8")
+    save(tour, tour.read_text("utf-8").replace(SORRY, LATER))
     viewer.shows("Makes the saved files active", ".file-actions")
     viewer.open(served.console.address, "robot/NAO/files", ready=".saved", mode="operator")
     viewer.shows("See you tomorrow, perhaps", ".changes ins")

@@ -7,6 +7,7 @@ from threading import Event, Thread
 from typing import NamedTuple
 
 from tests.features.console.house import CONSOLE, ROBOT, WHOLE, House
+from tests.saving import save
 
 SORRY = 'en: "I am sorry, I did not understand that."'
 PARDON = 'en: "Come again, please?"'
@@ -27,11 +28,11 @@ class Trouble(NamedTuple):
     presses: int = 1
 
 
-def save(house: House) -> None:
+def save_tour(house: House) -> None:
     """Save the tour with another sentence."""
     tour = house.folder / "behaviors" / "tour.yaml"
     text = tour.read_text("utf-8")
-    tour.write_text(text.replace(SORRY, PARDON) if SORRY in text else text.replace(PARDON, SORRY), "utf-8")
+    save(tour, text.replace(SORRY, PARDON) if SORRY in text else text.replace(PARDON, SORRY))
 
 
 def dance(house: House) -> None:
@@ -61,7 +62,7 @@ EVERYWHERE = (
     QUIET,
     LOADING,
     LEAVING,
-    Trouble("a saved file", 4, save),
+    Trouble("a saved file", 4, save_tour),
     Trouble("a dance", 4, dance),
     Trouble("network cut", 2, lambda house: house.network.cut(), lambda house: house.network.mend(), presses=3),
     Trouble("console killed", 1, lambda house: house.kill(CONSOLE), restart(CONSOLE), presses=3),
