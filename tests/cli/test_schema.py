@@ -150,7 +150,9 @@ def test_what_is_added_to_settings_is_in_them(
 
 
 def test_a_project_without_schemas_uses_those_of_lumen(tmp_path: Path) -> None:
-    for schema in settings(tmp_path)["yaml.schemas"]:
+    schemas = settings(tmp_path)["yaml.schemas"]
+    assert schemas
+    for schema in schemas:
         assert schema.startswith("file://")
 
 

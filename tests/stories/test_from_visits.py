@@ -82,7 +82,9 @@ def test_every_visit_of_the_shipped_stories_is_a_story_that_passes(
 ) -> None:
     folder = copies[name]
     project, bundles = lumen.load(folder), KeptBundles(folder)
-    for visit in recorded(folder, story):
+    found = recorded(folder, story)
+    assert found
+    for visit in found:
         assert visit.home
         old = bundles.project(visit.home.bundle, visit.home.behavior)
         assert old
