@@ -14,9 +14,12 @@ from lumen.run import node as naps
 from lumen.run.exhibition import Exhibition
 from lumen.run.house import House
 from lumen.run.loop import TICK_PERIOD
+from lumen.run.node import Node
 from lumen.run.parts.part import Part
 from lumen.run.plan import Plan
 from lumen.run.setup import Setup, set_up, set_up_house
+from tests.saving import save
+from tests.waiting import until
 
 NAMES = ("ana", "ben")
 MAIN = """
@@ -80,7 +83,7 @@ def sleeper(tmp_path: Path, request: pytest.FixtureRequest) -> Iterator[Exhibiti
     setup = set_up("recording", loaded, "1")
     if request.param == "real":
         setup = Setup(setup.robot, RealClock(), setup.hall)
-    show = Exhibition(Plan(loaded, setup, "memory://napping", options={"reload": "auto"}))
+    show = Exhibition(Plan(loaded, setup, f"memory://{tmp_path}", options={"reload": "auto"}))
     show.start()
     yield show
     show.close()
@@ -106,17 +109,19 @@ def ticks_of(show: Exhibition) -> Sequence[float]:
 
 def lived_until(show: Exhibition, state: str) -> None:
     """Nap and tick until the exhibition is in that state."""
-    while state not in show.configuration:
-        show.node.nap()
-        show.node.tick()
+    until(lambda: state in show.configuration, meanwhile=lambda: lived(show.node))
+
+
+def lived(one: Node | House) -> None:
+    """Nap and tick once."""
+    one.nap()
+    one.tick()
 
 
 def test_while_nothing_is_due_it_ticks_seldom(sleeper: Exhibition) -> None:
     lived_until(sleeper, "dreaming")
     began, ticks = sleeper.now, ticks_of(sleeper)
-    while len(ticks) < 5:
-        sleeper.node.nap()
-        sleeper.node.tick()
+    until(lambda: len(ticks) >= 5, meanwhile=lambda: lived(sleeper.node))
     assert sleeper.now - began > 5 * 2 * TICK_PERIOD
     assert "dreaming" in sleeper.configuration
 
@@ -140,7 +145,7 @@ def test_a_message_wakes_it(sleeper: Exhibition, long: None) -> None:
 def test_a_saved_file_wakes_it(sleeper: Exhibition, long: None) -> None:
     lived_until(sleeper, "dreaming")
     behavior = Path(sleeper.project.root) / "behaviors/sleeper.yaml"
-    behavior.write_text(BEHAVIOR.replace("dreaming: {}", "dreaming: {always: [{target: awake}]}"), "utf-8")
+    save(behavior, BEHAVIOR.replace("dreaming: {}", "dreaming: {always: [{target: awake}]}"))
     lived_until(sleeper, "awake")
 
 
@@ -148,17 +153,13 @@ def test_what_one_robot_of_a_house_hears_wakes_all(tmp_path: Path, long: None) -
     root = project(tmp_path, "robots: {ana: {model: nao}, ben: {model: nao}}")
     projects = {name: lumen.load(root, robot=name) for name in NAMES}
     setups = set_up_house("recording", projects, "1", dict.fromkeys(NAMES))
-    shows = {name: Exhibition(Plan(projects[name], setups[name], "memory://asleep")) for name in NAMES}
+    shows = {name: Exhibition(Plan(projects[name], setups[name], f"memory://{tmp_path}")) for name in NAMES}
     house = House({name: show.services for name, show in shows.items()})
     house.start()
-    while not all("dreaming" in show.configuration for show in shows.values()):
-        house.nap()
-        house.tick()
+    until(lambda: all("dreaming" in show.configuration for show in shows.values()), meanwhile=lambda: lived(house))
     hear = threading.Timer(0.1, lambda: shows["ben"].send("heard", {"result": "hello"}))
     hear.start()
-    while "awake" not in shows["ben"].configuration:
-        house.nap()
-        house.tick()
+    until(lambda: "awake" in shows["ben"].configuration, meanwhile=lambda: lived(house))
     hear.join()
     assert "awake" not in shows["ana"].configuration
     assert shows["ana"].now == pytest.approx(shows["ben"].now, abs=TICK_PERIOD)

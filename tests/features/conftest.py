@@ -11,7 +11,7 @@ from lumen.bus import Bus, connect
 from lumen.language.modules import ModuleSettings
 from lumen.language.projects import Project
 from lumen.run.module import Module
-from tests.waiting import Collector
+from tests.waiting import HANG, Collector
 
 
 @pytest.fixture(scope="session")
@@ -52,7 +52,7 @@ class Stand:
 
     def settle(self) -> None:
         for module in self.modules:
-            assert module.settle(60.0)
+            assert module.settle(HANG)
 
     def close(self) -> None:
         for module in self.modules:

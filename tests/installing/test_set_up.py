@@ -9,6 +9,7 @@ import pytest
 
 from tests import ROOT
 from tests.guarded import run_guarded
+from tests.waiting import HANG
 
 PROGRAMS = ("sh", "cat", "grep", "tail", "mkdir", "rm", "touch", "dirname", "chmod", "ln")
 NEW = """case "$*" in
@@ -52,7 +53,7 @@ class Checkout:
             env={"PATH": str(self._programs), **environment},
             capture_output=True,
             text=True,
-            timeout=60,
+            timeout=HANG,
         )
 
 

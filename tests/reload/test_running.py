@@ -24,6 +24,7 @@ from lumen.statechart import Machine, Snapshot, Step
 from tests import ROOT, exhibits
 from tests.nodes import whole
 from tests.tables import for_each
+from tests.waiting import until
 
 
 class Seen(Observer):
@@ -100,8 +101,7 @@ def test_a_motion_that_plays_ends_as_it_began_and_is_the_new_one_the_next_time()
     exhibition.tick()
     longer = {**project.motions, "dance": MotionDefinition("dance", 3.0, project.motions["dance"].tracks)}
     swap(exhibition, replace(project, motions=longer))
-    while len(seen.answers) < 2:
-        exhibition.tick()
+    until(lambda: len(seen.answers) >= 2, meanwhile=exhibition.tick)
     (first, at), (second, later) = seen.answers
     assert (first, second) == ("done.command.d1", "done.command.d2")
     assert abs(at - 1.0) < 2 * TICK_PERIOD
@@ -114,8 +114,7 @@ def test_a_motion_that_plays_may_be_deleted_when_it_has_ended() -> None:
     calm = machine(states={"a": {"do": {"say": "no"}, "onDone": "b"}, "b": {}})
     without = replace(project, behaviors={"tour": calm}, motions={})
     assert exhibition.plan(without) == MigrationDelay("these files change the `do` of `a`, which is still running", "a")
-    while len(seen.answers) < 2:
-        exhibition.tick()
+    until(lambda: len(seen.answers) >= 2, meanwhile=exhibition.tick)
     exhibition.tick()
     assert swap(exhibition, without).commands == ()
 
@@ -126,8 +125,7 @@ def test_cancelled_rather_than_waited_for_it_begins_what_is_new() -> None:
     exhibition.tick()
     singing = machine(states={"a": {"do": {"play": "sing"}, "onDone": "b"}, "b": {}})
     swap(exhibition, replace(project, behaviors={"tour": singing}), now=True)
-    while "b" not in exhibition.runtime.snapshot.configuration:
-        exhibition.tick()
+    until(lambda: "b" in exhibition.runtime.snapshot.configuration, meanwhile=exhibition.tick)
     assert [name for name, _ in seen.answers] == ["cancelled.command.d1", "done.command.d2"]
 
 
@@ -229,8 +227,7 @@ def test_a_fault_anywhere_in_a_plan_changes_nothing(point: str, monkeypatch: pyt
             exhibition.plan(changed)
     assert exhibition.project is project
     assert exhibition.runtime.snapshot is before
-    while not seen.answers:
-        exhibition.tick()
+    until(lambda: seen.answers, meanwhile=exhibition.tick)
     assert swap(exhibition, changed).snapshot.context == {"more": 1}
 
 

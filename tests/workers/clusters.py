@@ -8,9 +8,7 @@ from pathlib import Path
 
 from tests import ROOT
 from tests.guarded import DEVNULL, Guarded
-from tests.waiting import until
-
-READY_TIMEOUT = 60.0
+from tests.waiting import HANG, until
 
 
 @contextmanager
@@ -28,7 +26,7 @@ def dask_cluster(folder: Path, workers: int) -> Iterator[str]:
             started.callback(process.kill)
 
         start("scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard")
-        until(file.exists, READY_TIMEOUT)
+        until(file.exists, HANG)
         for number in range(workers):
             start(
                 "worker",
@@ -41,6 +39,6 @@ def dask_cluster(folder: Path, workers: int) -> Iterator[str]:
             )
         with Client(scheduler_file=str(file), set_as_default=False) as client:
             if workers:
-                client.wait_for_workers(workers, READY_TIMEOUT)
+                client.wait_for_workers(workers, HANG)
             address = client.scheduler.address
         yield address.replace("tcp://", "dask://")

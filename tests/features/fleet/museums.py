@@ -16,7 +16,7 @@ from lumen.language.fleet_keys import bundle_key, desired_key, presence_key
 from lumen.project.files import read_files
 from tests.features.fleet.brokers import CENTRE, HOUSES, FleetBrokers
 from tests.features.fleet.houses import Taker, project
-from tests.waiting import until
+from tests.waiting import HANG, until
 
 ROBOTS = {"itb": ("nao1", "nao2"), "hall": ("nao1", "nao2", "nao3")}
 
@@ -84,7 +84,7 @@ class Museums:
         self.served.tick()
         self.most = max(self.most, len(self.served.centre.state.exposed))
 
-    def until(self, holds: Callable[[], object], timeout: float = 60.0) -> None:
+    def until(self, holds: Callable[[], object], timeout: float = HANG) -> None:
         until(lambda: self.look() or holds(), timeout, every=0.1)
 
     def roll(self, files: dict[str, bytes]) -> str:

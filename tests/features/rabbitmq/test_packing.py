@@ -64,7 +64,7 @@ class Plain:
         self._url, self._keys, self._bound = url, keys, threading.Event()
         self._thread = threading.Thread(target=self._run)
         self._thread.start()
-        assert self._bound.wait(20.0)
+        assert self._bound.wait(HANG)
 
     def of(self, key: str) -> list[tuple[str, Any, bytes]]:
         return [one for one in self.came if one[0] == key]
