@@ -12,8 +12,8 @@ from jsonschema import Draft202012Validator
 
 from lumen.cli.jsonc import added, plain
 from lumen.cli.main import main
-from lumen.cli.schema import FILES, settings
-from lumen.project.project_folders import FILE_KINDS
+from lumen.cli.schema import files, settings
+from lumen.project.project_folders import file_kinds
 from lumen.project.schema import load_schema
 from tests import ROOT
 from tests.tables import for_each
@@ -46,7 +46,7 @@ def whole(schema: Any, root: Any) -> dict[str, Any]:
     return found
 
 
-@for_each("kind", FILE_KINDS)
+@for_each("kind", file_kinds())
 def test_every_property_is_described_and_shown(kind: str) -> None:
     root = load_schema(kind)
     Draft202012Validator.check_schema(root)
@@ -59,7 +59,7 @@ def test_every_property_is_described_and_shown(kind: str) -> None:
         assert SAMPLES & known.keys() or known.get("type") == "boolean" or "$ref" in str(schema), name
 
 
-@for_each("kind", FILE_KINDS)
+@for_each("kind", file_kinds())
 def test_examples_and_defaults_fit(kind: str) -> None:
     root = load_schema(kind)
     for name, schema in properties(root):
@@ -72,13 +72,13 @@ def test_a_schema_is_printed(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["schema", "motion"]) == 0
     assert json.loads(capsys.readouterr().out) == load_schema("motion")
     assert main(["schema"]) == 0
-    assert [line.split()[0] for line in capsys.readouterr().out.splitlines()] == list(FILE_KINDS)
+    assert [line.split()[0] for line in capsys.readouterr().out.splitlines()] == list(file_kinds())
 
 
 def test_every_kind_has_its_files() -> None:
-    assert FILES.keys() == set(FILE_KINDS)
-    shown = {kind for kind, (one, *_) in FILES.items() if {*ROOT.glob(one), *ROOT.glob(f"examples/*/{one}")}}
-    assert FILES.keys() == shown
+    assert files().keys() == set(file_kinds())
+    shown = {kind for kind, (one, *_) in files().items() if {*ROOT.glob(one), *ROOT.glob(f"examples/*/{one}")}}
+    assert files().keys() == shown
 
 
 def test_settings_join_those_that_are_there(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

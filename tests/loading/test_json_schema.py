@@ -13,7 +13,7 @@ from lumen.expressions.json_schema import MAX_DATA_DEPTH, JsonSchema
 from lumen.project.document import MAX_NODE_DEPTH, Document
 from lumen.project.files import read_files
 from lumen.project.messages import build_message
-from lumen.project.project_folders import FILE_KINDS, kind_of
+from lumen.project.project_folders import file_kinds, kind_of
 from lumen.project.schema import load_schema
 from lumen.project.yaml_reader import parse
 from tests import ROOT
@@ -33,8 +33,8 @@ def documents() -> list[tuple[str, Document]]:
 
 
 DOCUMENTS = documents()
-QUICK = {kind: JsonSchema(load_schema(kind)) for kind in FILE_KINDS}
-VALIDATORS = {kind: Draft202012Validator(load_schema(kind)) for kind in FILE_KINDS}
+QUICK = {kind: JsonSchema(load_schema(kind)) for kind in file_kinds()}
+VALIDATORS = {kind: Draft202012Validator(load_schema(kind)) for kind in file_kinds()}
 SMALL = [(kind, document) for kind, document in DOCUMENTS if len(document.spans) < 200]
 VALUES = [
     None,

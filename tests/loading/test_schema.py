@@ -13,7 +13,7 @@ from lumen.project.complaints import Complaint
 from lumen.project.document import Document
 from lumen.project.document_report import DocumentReport
 from lumen.project.packaged import schema_folder
-from lumen.project.project_folders import FILE_KINDS
+from lumen.project.project_folders import file_kinds
 from lumen.project.schema import check_schema, faults, load_schema
 from lumen.project.yaml_nodes import read_text
 from lumen.project.yaml_reader import parse
@@ -29,7 +29,7 @@ def check(text: str, kind: str = "behavior") -> tuple[Any, DocumentReport]:
     return check_schema(document, kind, report), report
 
 
-@for_each("kind", FILE_KINDS)
+@for_each("kind", file_kinds())
 def test_a_schema_is_strict_and_describes_its_keys(kind: str) -> None:
     schema = load_schema(kind)
     jsonschema.Draft202012Validator.check_schema(schema)
@@ -52,7 +52,7 @@ def test_a_schema_is_strict_and_describes_its_keys(kind: str) -> None:
 
 
 def test_every_kind_has_its_schema() -> None:
-    assert {f"{kind}.schema.json" for kind in FILE_KINDS} == {p.name for p in schema_folder().glob("*.schema.json")}
+    assert {f"{kind}.schema.json" for kind in file_kinds()} == {p.name for p in schema_folder().glob("*.schema.json")}
 
 
 def test_a_sound_document_is_returned_as_it_is() -> None:

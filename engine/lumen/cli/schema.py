@@ -2,7 +2,6 @@
 
 import argparse
 import json
-from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -14,18 +13,20 @@ from lumen.project.added_verbs import NO_VERBS
 from lumen.project.building import draft
 from lumen.project.files import MAX_FILE_BYTES, read_files
 from lumen.project.packaged import find_project, schema_folder
-from lumen.project.project_folders import FILE_KINDS, KINDS
+from lumen.project.project_folders import KINDS, file_kinds
 from lumen.project.schema import load_schema
 from lumen.upkeep.regular_files import read_regular
 
-FILES: Mapping[str, tuple[str, ...]] = {
-    kind: tuple(
-        f"{path}/*{'.schema.json' if kind == 'message' else '.yaml'}" for path, of in KINDS.items() if of == kind
-    )
-    or (f"{kind}.yaml",)
-    for kind in FILE_KINDS
-}
-"""The file patterns of a project for each kind of file."""
+
+def files() -> dict[str, tuple[str, ...]]:
+    """Return the file patterns of a project for each kind of file."""
+    return {
+        kind: tuple(
+            f"{path}/*{'.schema.json' if kind == 'message' else '.yaml'}" for path, of in KINDS.items() if of == kind
+        )
+        or (f"{kind}.yaml",)
+        for kind in file_kinds()
+    }
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -34,9 +35,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add(
         "kind",
         nargs="?",
-        choices=FILE_KINDS,
+        choices=file_kinds(),
         metavar="KIND",
-        help=f"one of {', '.join(FILE_KINDS)}; leave it out to list them",
+        help=f"one of {', '.join(file_kinds())}; leave it out to list them",
     )
     add("--project", metavar="DIR", type=Path, help="with KIND: a project whose skills the schema lists as well")
     add("--vscode", action="store_true", help="print the VS Code settings that assign a schema to each file")
@@ -74,28 +75,34 @@ def run(options: argparse.Namespace) -> int:
 def _kinds() -> dict[str, Any]:
     return {
         "kinds": [
-            {"kind": kind, "files": list(FILES.get(kind, ())), "title": load_schema(kind)["title"]}
-            for kind in FILE_KINDS
+            {"kind": kind, "files": list(patterns), "title": load_schema(kind).get("title", "")}
+            for kind, patterns in files().items()
         ]
     }
 
 
 def _list() -> str:
-    wide = max(map(len, FILE_KINDS))
-    lines = [f"{kind:{wide}}  {', '.join(FILES.get(kind, ())):40} {load_schema(kind)['title']}" for kind in FILE_KINDS]
-    return "\n".join(lines) + "\n"
+    wide = max(map(len, file_kinds()))
+    rows = [(kind, ", ".join(patterns), load_schema(kind).get("title", "")) for kind, patterns in files().items()]
+    return "\n".join(f"{kind:{wide}}  {patterns:40} {title}".rstrip() for kind, patterns, title in rows) + "\n"
 
 
 def settings(root: Path) -> dict[str, Any]:
-    """Return VS Code's settings that assign a schema to each file: the project's own copy, or else this Lumen's."""
+    """Return VS Code's settings that assign a schema to each file: the project's own copy, or else this Lumen's.
+
+    A kind of file of another package is left out until the project has a copy: `lumen schema KIND -o FILE`.
+    """
     found: dict[str, dict[str, Any]] = {"yaml.schemas": {}}
-    for kind, files in FILES.items():
-        own = f"schemas/{kind}.schema.json"
-        schema = f"./{own}" if (root / own).is_file() else (schema_folder() / f"{kind}.schema.json").as_uri()
+    for kind, patterns in files().items():
+        own, file = f"schemas/{kind}.schema.json", schema_folder() / f"{kind}.schema.json"
+        if not (root / own).is_file() and not file.is_file():
+            continue  # a package has this schema, and no file does
+        schema = f"./{own}" if (root / own).is_file() else file.as_uri()
         if kind == "message":
-            found["json.schemas"] = [{"fileMatch": [f"/{f}" for f in files], "url": schema}]  # type: ignore[assignment]
+            match = [f"/{pattern}" for pattern in patterns]
+            found["json.schemas"] = [{"fileMatch": match, "url": schema}]  # type: ignore[assignment]
         else:
-            found["yaml.schemas"][schema] = list(files)
+            found["yaml.schemas"][schema] = list(patterns)
     return found
 
 

@@ -239,6 +239,18 @@ class Section(NamedTuple):
         return self.risk == "restart"
 
 
+class FileRow(NamedTuple):
+    """A YAML file next to lumen.yaml that belongs to the project."""
+
+    build: str
+    """An import string of a function that builds the file's settings, which `ProjectDraft.beside` has by its name.
+
+    The function gets the file's data, its `DocumentReport`, and the file's `name` without its ending as a keyword.
+    """
+    schema: str = ""
+    """An import string of the file's JSON Schema, a `dict` without `$ref`; empty if it is schemas/NAME.schema.json."""
+
+
 class Subcommand(NamedTuple):
     """A subcommand of `lumen`."""
 
@@ -407,12 +419,8 @@ class Feature(NamedTuple):
     """By imported format, its `FormatTable` of names that are read, lost or without meaning."""
     sections: Mapping[str, Section] = {}
     """Sections of lumen.yaml by their keys; `modules.show` is the key `show` under `modules`."""
-    files: Mapping[str, str] = {}
-    """By the name of a YAML file next to lumen.yaml, such as `fleet.yaml`, the function that builds its settings.
-
-    The function gets the file's data, a report, and the file's `name` without its ending; schemas/NAME.schema.json
-    describes the data. The result is in `ProjectDraft.beside`, by the name of the file.
-    """
+    files: Mapping[str, FileRow] = {}
+    """YAML files next to lumen.yaml by their names, such as `fleet.yaml`."""
     verbs: Mapping[str, VerbRow] = {}
     """Verbs of the YAML that the robot performs, by their names."""
     verb_files: Mapping[str, str] = {}

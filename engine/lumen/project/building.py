@@ -24,7 +24,7 @@ from lumen.language.verbs import is_built_in
 from lumen.project.added_verbs import NO_VERBS, OwnVerbs
 from lumen.project.behaviors import build_machine
 from lumen.project.bodies import build_body, build_likes
-from lumen.project.broken_features import resolved
+from lumen.project.broken_features import faults_reported
 from lumen.project.built_file import Build, BuiltFile, read_file
 from lumen.project.chosen_model import chosen
 from lumen.project.chosen_robot import chosen_robot
@@ -55,8 +55,10 @@ from lumen.project.project_folders import (
     gestures_of,
     is_robots_own,
     kind_in,
+    kind_of,
     life_of,
 )
+from lumen.project.sections import added_schema
 from lumen.project.settings import Settings, other_vocabulary
 from lumen.project.stories import build_sayings, build_story
 from lumen.project.unread import robots_own_hint
@@ -149,11 +151,14 @@ def _judge(found: ProjectDraft) -> None:
 
 def _beside(found: ProjectDraft) -> None:
     """Build the files in the project's root folder that features have rows for."""
-    for feature, (name, where) in rows("files"):
+    for feature, (name, row) in rows("files"):
         if (content := found.files.get(name)) is not None:
-            file = _read(found, name, content, PurePosixPath(name).stem, resolved(feature, where))
-            if file and file.built is not None:
-                found.beside[name] = file.built
+            with faults_reported(feature, f"reading `{name}`", found.loose):
+                if row.schema:
+                    added_schema(row.schema)
+                file = _read(found, name, content, kind_of(name), resolve(row.build))
+                if file and file.built is not None:
+                    found.beside[name] = file.built
 
 
 def motion_parts(files: Mapping[str, bytes]) -> ProjectDraft:

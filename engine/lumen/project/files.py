@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path, PurePosixPath
 from unicodedata import normalize
 
+from lumen.feature import table
 from lumen.project.chosen_model import choice
 from lumen.project.chosen_robot import CHOSEN_ROBOT, as_robot
 from lumen.project.common_words import with_common_words
@@ -19,6 +20,7 @@ from lumen.project.project_folders import (
     endings_in,
     gestures_of,
     is_robots_own,
+    is_root_file,
     life_of,
 )
 from lumen.upkeep.regular_files import MEGABYTE
@@ -61,7 +63,7 @@ def read_files(root: Path, robot: str = "", kept: KeptContents | None = None) ->
     are read for that robot. A file in `kept` that has not changed is not read again.
     """
     read = _Reader(root, kept)
-    found = {name: content for name in (MAIN_FILE, FLEET_FILE) if (content := read.file(name)) is not None}
+    found = {name: content for name in (MAIN_FILE, *table("files")) if (content := read.file(name)) is not None}
     for folder in dict.fromkeys((*KINDS, *MISTAKEN_FOLDERS, *_robots_own(root))):
         endings = (".yaml",) if folder in MISTAKEN_FOLDERS else endings_in(folder)
         if outside := next((each for each in _within(folder) if read.leads_out(each)), None):
@@ -103,7 +105,7 @@ def read_main_file(root: Path) -> bytes:
 def belongs(path: str) -> bool:
     """Return True if a file of that path from the project's root is part of a project."""
     folder, _, name = path.rpartition("/")
-    return path in (MAIN_FILE, FLEET_FILE) or (not name.startswith(".") and name.endswith(endings_in(folder)))
+    return is_root_file(path) or (not name.startswith(".") and name.endswith(endings_in(folder)))
 
 
 def fingerprint(files: Mapping[str, bytes]) -> str:

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from pathlib import PurePosixPath
 from typing import NamedTuple
 
+from lumen.feature import table
 from lumen.language.folders import FUNCTIONS_FOLDER, KNOWLEDGE_FOLDER, QUESTIONS_FOLDER, SAYINGS_FOLDER
 
 MAIN_FILE, MAIN_KIND = "lumen.yaml", "lumen"
@@ -49,15 +50,22 @@ FOLDERS = (
 KINDS: Mapping[str, str] = {folder.path: folder.kind for folder in FOLDERS}
 """The kind of file in each folder."""
 
-FILE_KINDS = tuple(dict.fromkeys((MAIN_KIND, *KINDS.values(), "fleet")))
-"""All kinds of file; each has a `schemas/KIND.schema.json`."""
-
 PROJECT_FOLDERS = tuple(dict.fromkeys(folder.path.partition("/")[0] for folder in FOLDERS))
 """The folders next to lumen.yaml that belong to a project."""
 
 ALL_FOLDERS = frozenset((*PROJECT_FOLDERS, *KINDS))
 
 _ENDINGS: Mapping[str, tuple[str, ...]] = {folder.path: folder.endings for folder in FOLDERS}
+
+
+def file_kinds() -> tuple[str, ...]:
+    """Return all kinds of file. A kind has a `schemas/KIND.schema.json`, or a schema in the row of its feature."""
+    return tuple(dict.fromkeys((MAIN_KIND, *KINDS.values(), *map(kind_of, table("files")))))
+
+
+def is_root_file(path: str) -> bool:
+    """Return True for the name of a YAML file in the project's root: lumen.yaml, or a file of a feature."""
+    return path == MAIN_FILE or path in table("files")
 
 
 def endings_in(folder: str) -> tuple[str, ...]:
@@ -101,7 +109,7 @@ def _shared(folder: str) -> str:
 
 def kind_of(file: str) -> str:
     """Return the kind of a YAML or JSON file by its path in a project; empty for any other file."""
-    if file in (MAIN_FILE, FLEET_FILE):
+    if is_root_file(file):
         return file.removesuffix(".yaml")
     path = PurePosixPath(file)
     return kind_in(str(path.parent)) if path.suffix in (".yaml", ".json") else ""

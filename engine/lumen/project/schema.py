@@ -8,11 +8,12 @@ from typing import Any
 
 from lumen.errors import LumenError
 from lumen.expressions.json_schema import JsonSchema
-from lumen.feature import VerbRow
+from lumen.feature import VerbRow, owner, table
 from lumen.language.added_verbs import UNUSABLE, expected_schema, written_schema
 from lumen.language.diagnostics import NodePath
 from lumen.language.text_lines import lines_of
 from lumen.project.added_verbs import NO_VERBS, OwnVerbs
+from lumen.project.broken_features import blaming
 from lumen.project.complaints import MISSING_KEY, ONE_VERB, UNKNOWN_KEY, WRONG_KEY, WRONG_TYPE, Complaint, complaints
 from lumen.project.document import TOO_LARGE, Document
 from lumen.project.document_report import DocumentReport, prune
@@ -20,8 +21,8 @@ from lumen.project.feature_schemas import add_bases, add_features
 from lumen.project.misindented import KeyNames, key_names, misindented
 from lumen.project.misplaced import misplaced
 from lumen.project.packaged import schema_folder
-from lumen.project.project_folders import MAIN_KIND
-from lumen.project.sections import with_sections
+from lumen.project.project_folders import KINDS, MAIN_KIND
+from lumen.project.sections import added_schema, with_sections
 from lumen.project.torn_texts import quoting, whole_translation
 from lumen.project.yaml_nodes import read_text
 
@@ -78,8 +79,12 @@ def misfits(kind: str, text: str) -> int | None:
 def load_schema(kind: str, verbs: OwnVerbs = NO_VERBS) -> Any:
     """Return the JSON Schema of a kind of file as data, with the additions of features and of the project's `verbs`.
 
-    Raises LumenError if the schema's file is damaged or missing.
+    Raises LumenError if the schema's file is damaged or missing, or if the feature of the file has no usable schema.
     """
+    file_name = f"{kind}.yaml"
+    if (row := table("files").get(file_name)) and row.schema and kind not in KINDS.values():
+        with blaming(owner("files", file_name), row.schema):
+            return added_schema(row.schema)
     file = schema_folder() / f"{kind}.schema.json"
     try:
         schema = json.loads(file.read_bytes())

@@ -105,7 +105,7 @@ def with_sections(schema: dict[str, Any]) -> dict[str, Any]:
                 siblings = siblings.setdefault(step, {"type": "object"}).setdefault("properties", {})
             own: Mapping[str, Any] = {}
             with faults_reported(feature, f"the schema of `{key}`", []):
-                own = _schema(row.schema)
+                own = added_schema(row.schema)
             siblings.setdefault(name, own)
     return schema
 
@@ -117,7 +117,7 @@ def _read(row: Section, data: Mapping[str, Any], report: DocumentReport) -> obje
     `row.entries` is not a mapping. Exceptions of the feature's code are not caught.
     """
     if row.schema:
-        _schema(row.schema)
+        added_schema(row.schema)
     settings: object = resolve(row.read)(data, report)
     if not is_dataclass(settings):
         raise TypeError(f"`{row.read}` returns no dataclass")
@@ -127,7 +127,7 @@ def _read(row: Section, data: Mapping[str, Any], report: DocumentReport) -> obje
 
 
 @cache
-def _schema(where: str) -> Mapping[str, Any]:
+def added_schema(where: str) -> Mapping[str, Any]:
     """Return the JSON Schema that an import string names. Raises TypeError if there is no usable one."""
     schema = resolve(where)
     if not is_usable_alone(schema):

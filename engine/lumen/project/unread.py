@@ -12,7 +12,6 @@ from lumen.project.files import MISTAKEN_FOLDERS
 from lumen.project.misplaced import listed_in, misnamed_in
 from lumen.project.project_folders import (
     ALL_FOLDERS,
-    FILE_KINDS,
     GESTURES_FOLDER,
     KINDS,
     LIFE_FOLDER,
@@ -23,6 +22,7 @@ from lumen.project.project_folders import (
     PROJECT_FOLDERS,
     SKILLS,
     endings_in,
+    file_kinds,
     gestures_of,
     is_robots_own,
     kind_in,
@@ -179,7 +179,7 @@ def _message_of(file: str) -> str:
 def _at_root(root: Path, look: Callable[[Path], object]) -> Iterator[Unread]:
     """Yield stray schemas, and the first file of each folder of the root with nearly the name of a project's folder."""
     look(root)
-    schemas = {f"{kind}{_SCHEMA_ENDING}" for kind in FILE_KINDS}
+    schemas = {f"{kind}{_SCHEMA_ENDING}" for kind in file_kinds()}
     for name in listed_in(root, _SCHEMAS):
         if name.endswith(_SCHEMA_ENDING) and name not in schemas:
             message = "Lumen does not read this as the schema of a message"

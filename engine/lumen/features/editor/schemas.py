@@ -6,7 +6,7 @@ from typing import Any
 
 from lumen.language.diagnostics import NodePath
 from lumen.project.added_verbs import NO_VERBS, OwnVerbs
-from lumen.project.project_folders import FILE_KINDS
+from lumen.project.project_folders import file_kinds
 from lumen.project.schema import MAX_SCHEMAS, load_schema
 
 _SAME = ("allOf", "anyOf", "oneOf")
@@ -15,7 +15,7 @@ _BRANCHES = ("then", "else", "$ref")
 
 @lru_cache(maxsize=MAX_SCHEMAS)
 def _root(kind: str, verbs: OwnVerbs) -> Mapping[str, Any]:
-    return load_schema(kind, verbs) if kind in FILE_KINDS else {}
+    return load_schema(kind, verbs) if kind in file_kinds() else {}
 
 
 def schemas_at(kind: str, path: NodePath, verbs: OwnVerbs = NO_VERBS) -> list[Mapping[str, Any]]:

@@ -1,6 +1,6 @@
 """Updates of robots in many houses."""
 
-from lumen.feature import Feature, PartRow, Phase, Subcommand
+from lumen.feature import Feature, FileRow, PartRow, Phase, Subcommand
 
 FEATURE = Feature(
     name="fleet",
@@ -16,7 +16,7 @@ FEATURE = Feature(
     before_start=("lumen.features.fleet.installing:finish",),
     pages=("lumen.features.fleet.pages",),
     section_rules={"fleet.yaml": "lumen.features.fleet.rules:check"},
-    files={"fleet.yaml": "lumen.features.fleet.reading:build_fleet"},
+    files={"fleet.yaml": FileRow("lumen.features.fleet.reading:build_fleet")},
     codes=("lumen.features.fleet.reading",),
     subcommands={
         "fleet": Subcommand(

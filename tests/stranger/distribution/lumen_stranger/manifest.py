@@ -6,6 +6,7 @@ from lumen.feature import (
     EditorRow,
     Exporter,
     Feature,
+    FileRow,
     FunctionRow,
     Importer,
     ModuleRow,
@@ -32,7 +33,7 @@ FEATURE = Feature(
     importers={".states": Importer("behavior", "lumen_stranger.lists:read_states")},
     exporters={"states": Exporter("behavior", "lumen_stranger.lists:write_states")},
     format_tables={"lists of states": "lumen_stranger.lists:KNOWN"},
-    codes=("lumen_stranger.lamp",),
+    codes=("lumen_stranger.lamp", "lumen_stranger.invitations"),
     parts=(PartRow("guest book", Phase.WATCH, "lumen_stranger.guests:make", "brain"),),
     forgets=("lumen_stranger.guests:GuestBook", "lumen_stranger.guests:forget"),
     sections={
@@ -45,6 +46,7 @@ FEATURE = Feature(
             of_house=True,
         )
     },
+    files={"guests.yaml": FileRow("lumen_stranger.invitations:build_guests", "lumen_stranger.invitations:SCHEMA")},
     verbs={
         "shine": VerbRow(
             performer="lumen_stranger.shining",
