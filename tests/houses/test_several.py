@@ -20,6 +20,7 @@ from lumen.run.recovery.run_directory import RunDirectory
 from lumen.run.recovery.startup import startup_project
 from lumen.run.setup import set_up_house
 from lumen.statechart import Step
+from tests.tables import for_each
 
 NAMES = ("ana", "ben")
 
@@ -140,6 +141,36 @@ def test_the_command_line_runs_all_of_them(two: Path, capsys: pytest.CaptureFixt
     assert "--video works with only one robot" in capsys.readouterr().err
     assert main(["run", str(two), *flags, "--voice", "espeak"]) == 2
     assert "--voice works with only one robot" in capsys.readouterr().err
+
+
+@for_each(
+    ("robot", "told"),
+    [
+        ("simulation", "the story `shy` has faults of the robot (`robot:`): play it with --robot recording"),
+        ("none", "the story `shy` has faults of the robot (`robot:`): play it with --robot recording"),
+        ("none --story visitor", "a story needs a robot: leave out --robot none"),
+        ("recording --only brain,visitor --bus amqp://127.0.0.1:1/", "pass --story to the robot's process, too"),
+    ],
+)
+def test_a_story_that_a_house_cannot_play_is_refused_as_for_one_robot(
+    robot: str, told: str, two: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (two / "behaviors/stories/shy.yaml").write_text("title: Shy\nrobot: {say: fails}\nsteps: [{visitor: arrives}]\n")
+    for chosen in ((), ("--robot-name", "ana")):
+        assert main(["run", str(two), "--story", "shy", *chosen, "--robot", *robot.split()]) == 2
+        assert told in capsys.readouterr().err
+
+
+@pytest.mark.process
+def test_a_house_in_which_a_story_was_not_over_ends_as_one_robot_does(
+    two: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    flags = ["--robot", "recording", "--story", "visitor", "--speed", "max", "--for", "1s", "--format", "json"]
+    for chosen in ((), ("--robot-name", "ana")):
+        assert main(["run", str(two), *flags, *chosen]) == 1
+        printed = capsys.readouterr()
+        assert json.loads(printed.out)["ended"] == "early"
+        assert "Ended before the story was over: 0:01" in printed.err
 
 
 def test_who_is_meant(two: Path) -> None:

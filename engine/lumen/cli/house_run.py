@@ -11,7 +11,7 @@ from lumen.cli.main import ready
 from lumen.cli.printing import clock_time
 from lumen.cli.run_choices import chosen_story, period_of, robot_wishes
 from lumen.cli.run_plan import RobotRun, bus_hint, compose_or_hint, heed_signals, leave, plan_of
-from lumen.cli.run_verdict import EARLY, FAILED, INTERRUPTED, TROUBLED, WELL, RunVerdict, troubles_of
+from lumen.cli.run_verdict import FAILED, RunVerdict, end_of, troubles_of
 from lumen.cli.transcript import Transcript
 from lumen.clock.following import FollowingClock
 from lumen.errors import LumenError, UsageError
@@ -19,7 +19,6 @@ from lumen.language.projects import Project
 from lumen.language.stories import Story
 from lumen.ports import Clock
 from lumen.run.house import House
-from lumen.run.parts.visitor import VisitorPart
 from lumen.run.plan import Plan
 from lumen.run.presence import BRAIN, ROBOT_PART
 from lumen.run.run_start import BegunRun
@@ -39,7 +38,7 @@ class HouseRun:
         self.directories, self.projects = start.directories, start.projects
         robots = tuple(self.projects)
         self._first = robots[0]
-        self.story = chosen_story(self.projects[self._first], options.story)
+        self.story = chosen_story(self.projects[self._first], options, parts)
         self.stories: dict[str, Story | None] = dict.fromkeys(robots) | {self._first: self.story}
         url = options.bus or os.environ.get("LUMEN_BUS") or self.projects[self._first].bus
         if parts and within_process(url):
@@ -74,24 +73,20 @@ class HouseRun:
         finally:
             house.close()
         took = time.monotonic() - began
-        nodes = list(house.nodes.values())
-        failed, early = any(node.failed for node in nodes), any(node.interrupted for node in nodes)
-        failure = self._failure() if not self._parts else ""
         of_parts = [f"{name}: {line}" for name, node in house.nodes.items() for line in node.summary()]
         told = {name: troubles_of(node, judged=self.stories[name] is not None) for name, node in house.nodes.items()}
         troubles = [f"{name}: {trouble}" for name, troubles in told.items() for trouble in troubles]
         troubles += [f"{name}: {error}" for name, error in self._lost.items()]
-        with_trouble = "Ended with trouble" if troubles else "Ended"
-        print(f"\n{'The story failed' if failed else with_trouble}: {clock_time(lived)}.")
+        end = end_of([*self.made.values()], troubles)
+        print(f"\n{end.words}: {clock_time(lived)}.")
         lines = [*RunVerdict.listed(troubles), *of_parts]
-        for line in [*([failure] if failure else []), *lines]:
+        for line in [*([end.failure] if end.ended == FAILED and not self._parts else []), *lines]:
             print(f"  {line}")
         for name, directory in self.directories.items():
             if name not in self._lost and (not self._parts or BRAIN in self._parts):
                 directory.ended(house.nodes[name].project)
                 directory.close(forget=not house.nodes[name].leaving)
-        ended = FAILED if failure else INTERRUPTED if early else EARLY if failed else TROUBLED if troubles else WELL
-        return RunVerdict(ended, lived, took, failure or next(iter(troubles), ""), tuple(lines))
+        return RunVerdict(end.ended, lived, took, end.failure, tuple(lines))
 
     def _set_up(self) -> dict[str, Setup]:
         if self._parts and ROBOT_PART not in self._parts:
@@ -121,11 +116,6 @@ class HouseRun:
         typed = greeting if first and not self._parts else ""
         setup, clock, transcript = self._setups.get(name), self._clocks[name], self.transcripts[name]
         return plan_of(self._options, one, self._parts, self._url, setup, clock, transcript, greeting=typed)
-
-    def _failure(self) -> str:
-        """Return the reason why the story failed; empty if it did not, or if there is no story."""
-        visitor = self.made[self._first].get(VisitorPart)
-        return visitor.player.failure if visitor and visitor.player else ""
 
     def _lose(self, name: str, error: LumenError) -> None:
         """Record the error that ended one robot; the other robots continue."""

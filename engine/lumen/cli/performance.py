@@ -8,13 +8,12 @@ from pathlib import Path
 from lumen.cli.main import ready
 from lumen.cli.printing import clock_time
 from lumen.cli.run_plan import leave, running
-from lumen.cli.run_verdict import EARLY, FAILED, INTERRUPTED, TROUBLED, WELL, RunVerdict, troubles_of
+from lumen.cli.run_verdict import ENDED, FAILED, RunVerdict, end_of, troubles_of
 from lumen.cli.transcript import Transcript
 from lumen.clock.real import RealClock
 from lumen.language.projects import Project
 from lumen.language.stories import Leave, VisitorAction
 from lumen.run.parts.robot import RobotPart
-from lumen.run.parts.visitor import VisitorPart
 from lumen.run.recovery.run_directory import RunDirectory
 from lumen.run.services import Services
 from lumen.run.setup import Setup
@@ -59,22 +58,16 @@ class Performance:
 
     def summary(self, services: Services, video: Path | None) -> RunVerdict:
         """Print how the run went, and return its verdict; `video` is the file of the film, if one was made."""
-        node, robot, visitor = services.node, services[RobotPart], services.get(VisitorPart)
-        player, story = visitor.player if visitor else None, services.plan.story
-        failure = player.failure if player else ""
-        early = player is not None and not player.finished
-        troubles = troubles_of(node, judged=player is not None)
-        how = FAILED if failure else EARLY if early else TROUBLED if troubles else WELL
-        ended = "The story failed" if failure else "Ended before the story was over" if early else "All well"
-        if (stopped := robot.server.hold.stopped) and not player:
-            ended = f"Stopped by {stopped.by}"
-        ended = "Ended with trouble" if how == TROUBLED else ended
-        how = INTERRUPTED if node.interrupted and how != FAILED else how
+        node, robot, story = services.node, services[RobotPart], services.plan.story
+        troubles = troubles_of(node, judged=story is not None)
+        end = end_of([services], troubles)
+        stopped = robot.server.hold.stopped if story is None else None
+        ended = (f"Stopped by {stopped.by}" if stopped else "All well") if end.words == ENDED else end.words
         real = isinstance(self._setup.clock, RealClock)
         pace = "" if real else f" in {self._took:.0f} s ({self._lived / max(self._took, 0.01):.1f} × real time)"
         print(f"\n{ended}: {clock_time(self._lived)} of {'simulated ' * bool(pace)}time{pace}.")
-        if failure:
-            print(f"  {failure}")
+        if end.ended == FAILED:
+            print(f"  {end.failure}")
         lines = [*RunVerdict.listed(troubles), self.transcript.counted()]
         if self.transcript.distance is not None:
             lines.append(
@@ -88,8 +81,7 @@ class Performance:
         print("      `lumen run` to be the visitor yourself, `lumen lint` after every change, `lumen graph` to see it.")
         if story and not film:
             print(f"      `lumen run --story {story.name} --speed max --video {story.name}.mp4` makes a video of this.")
-        failure = failure or next(iter(troubles), "")
-        return RunVerdict(how, self._lived, self._took, failure, tuple(lines), film)
+        return RunVerdict(end.ended, self._lived, self._took, end.failure, tuple(lines), film)
 
 
 class _VisitorsTranscript(Transcript):

@@ -15,7 +15,7 @@ from lumen.cli.performance import GREETING, Performance
 from lumen.cli.printing import clock_time
 from lumen.cli.run_choices import chosen_story, language_of, period_of, robot_of, wishes
 from lumen.cli.run_plan import RobotRun, bus_hint, compose_or_hint, heed_signals, leave, plan_of, running
-from lumen.cli.run_verdict import FAILED, INTERRUPTED, TROUBLED, WELL, RunVerdict, troubles_of
+from lumen.cli.run_verdict import RunVerdict, end_of, troubles_of
 from lumen.cli.streams import complain
 from lumen.cli.transcript import Transcript
 from lumen.clock.following import FollowingClock
@@ -23,7 +23,6 @@ from lumen.errors import ProjectError, UsageError
 from lumen.feature import table
 from lumen.journal.journal_folder import JOURNAL_FOLDER
 from lumen.language.projects import Project
-from lumen.language.stories import Story
 from lumen.ports import Clock
 from lumen.project.broken_features import broken_features
 from lumen.project.home import home_of as home_of_run
@@ -34,7 +33,6 @@ from lumen.run.audio_track import AudioTrack
 from lumen.run.chosen_stories import project_of
 from lumen.run.compose import begin, claim
 from lumen.run.loudspeaker import Loudspeaker, Sounds
-from lumen.run.node import Node
 from lumen.run.one_robot import robots_of
 from lumen.run.plan import Plan
 from lumen.run.presence import BRAIN, ROBOT_PART, all_parts
@@ -193,11 +191,7 @@ def _house(options: argparse.Namespace, start: BegunRun, parts: tuple[str, ...])
 def _run(options: argparse.Namespace, start: BegunRun, parts: tuple[str, ...]) -> RunVerdict:
     """Run one robot, or these parts of its exhibition."""
     (project,), (directory,) = start.projects.values(), start.directories.values()
-    story = chosen_story(project, options.story)
-    if story and story.robot and options.robot != "recording" and "robot" in (parts or ("robot",)):
-        raise UsageError(f"the story `{story.name}` has faults of the robot (`robot:`): play it with --robot recording")
-    if story and options.robot == "none":
-        raise UsageError("a story needs a robot: leave out --robot none")
+    story = chosen_story(project, options, parts)
     period = period_of(options.period)
     one, url = RobotRun(project, directory, story), options.bus or os.environ.get("LUMEN_BUS") or project.bus
     if parts:
@@ -226,7 +220,7 @@ def _processes(
 ) -> RunVerdict:
     """Run these parts of an exhibition. Raises UsageError for options that several processes can't have."""
     project, story, made = one.project, one.story, list[Services]()
-    _check_processes(options, story, parts, url)
+    _check_processes(options, parts, url)
     setup = robot_of(options, project, story) if ROBOT_PART in parts else None
     clock: Clock = setup.clock if setup else FollowingClock(float(options.speed))
     transcript = Transcript(clock.now, lambda: running(made, project).machine, unread=lambda: leave(made))
@@ -239,19 +233,19 @@ def _processes(
         lived = services.node.run(period)
     if BRAIN in parts:
         _ended(one, services)
-    return _summed_up(services.node, lived, judged=story is not None)
+    return _summed_up(services, lived)
 
 
-def _summed_up(node: Node, lived: float, *, judged: bool) -> RunVerdict:
-    """Print how the run of these parts went, and return its verdict; `judged` is true if a story was played."""
-    of_parts, troubles = node.summary(), troubles_of(node, judged=judged)
-    with_trouble = "Ended with trouble" if troubles else "Ended"
-    print(f"\n{'The story failed' if node.failed else with_trouble}: {clock_time(lived)}.")
+def _summed_up(services: Services, lived: float) -> RunVerdict:
+    """Print how the run of these parts went, and return its verdict."""
+    node = services.node
+    of_parts, troubles = node.summary(), troubles_of(node, judged=services.plan.story is not None)
+    end = end_of([services], troubles)
+    print(f"\n{end.words}: {clock_time(lived)}.")
     summary = (*RunVerdict.listed(troubles), *of_parts)
     for line in summary:
         print(f"  {line}")
-    ended = INTERRUPTED if node.interrupted else FAILED if node.failed else TROUBLED if troubles else WELL
-    return RunVerdict(ended, lived, failure=next(iter(troubles), ""), summary=summary)
+    return RunVerdict(end.ended, lived, failure=end.failure, summary=summary)
 
 
 @contextmanager
@@ -288,7 +282,7 @@ def _going_first() -> Iterator[None]:
                 os.setpriority(os.PRIO_PROCESS, 0, usual)
 
 
-def _check_processes(options: argparse.Namespace, story: Story | None, parts: Sequence[str], url: str) -> None:
+def _check_processes(options: argparse.Namespace, parts: Sequence[str], url: str) -> None:
     if within_process(url):
         raise UsageError("several processes need a common bus: pass `--bus amqp://USER:PASSWORD@HOST/`")
     if options.speed == "max":
@@ -297,10 +291,6 @@ def _check_processes(options: argparse.Namespace, story: Story | None, parts: Se
         )
     if options.robot == "none" and ROBOT_PART in parts:
         raise UsageError("`--only robot` needs a robot: leave out --robot none")
-    if story and story.robot and ROBOT_PART not in parts:
-        raise UsageError(
-            f"the story `{story.name}` has faults of the robot (`robot:`): pass --story to the robot's process, too"
-        )
 
 
 @contextmanager

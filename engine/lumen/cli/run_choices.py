@@ -1,6 +1,7 @@
 """The story, the language and the length of a run, from the options of `lumen run`."""
 
 import argparse
+from collections.abc import Sequence
 from typing import Any
 
 from lumen.cli.extras import run_extras
@@ -10,22 +11,35 @@ from lumen.language.projects import Project
 from lumen.language.stories import Story
 from lumen.project.units import seconds
 from lumen.run.chosen_stories import stories_of
+from lumen.run.presence import ROBOT_PART
 from lumen.run.setup import Setup, robot_options, set_up
 
 
-def chosen_story(project: Project, name: str | None) -> Story | None:
-    """Return the story that a name or pattern matches; None if `name` is None.
+def chosen_story(project: Project, options: argparse.Namespace, parts: Sequence[str]) -> Story | None:
+    """Return the story that the options choose for a robot of which this process runs these parts; None without one.
 
-    Raises UsageError if no story or several stories match.
+    Raises UsageError if no story or several stories match, or if the chosen robot can't play the story.
     """
-    if name is None:
+    if (name := options.story) is None:
         return None
     found = list(stories_of(project, name))
     if len(found) > 1:
         raise UsageError(
             f"choose one story: `{name}` matches {len(found)}, such as `{found[0].name}` and `{found[1].name}`"
         )
-    return found[0]
+    story = found[0]
+    if story.robot and (wanted := _player_of_faults(options.robot, parts)):
+        raise UsageError(f"the story `{story.name}` has faults of the robot (`robot:`): {wanted}")
+    if options.robot == "none":
+        raise UsageError("a story needs a robot: leave out --robot none")
+    return story
+
+
+def _player_of_faults(robot: str, parts: Sequence[str]) -> str:
+    """Return how to play a story with faults of the robot; empty if this robot, run with these parts, plays them."""
+    if parts and ROBOT_PART not in parts:
+        return "pass --story to the robot's process, too"
+    return "" if robot == "recording" else "play it with --robot recording"
 
 
 def period_of(text: str | None) -> float | None:

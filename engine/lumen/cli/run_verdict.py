@@ -4,8 +4,17 @@ from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 from lumen.run.node import Node
+from lumen.run.parts.visitor import VisitorPart
+from lumen.run.services import Services
 
 WELL, FAILED, TROUBLED, EARLY, INTERRUPTED = "well", "failed", "troubled", "early", "interrupted"
+ENDED = "Ended"
+_WORDS = {
+    FAILED: "The story failed",
+    EARLY: "Ended before the story was over",
+    TROUBLED: "Ended with trouble",
+    WELL: ENDED,
+}
 MAX_TROUBLES = 5
 """The maximum number of troubles that the summary of a run lists."""
 
@@ -53,6 +62,31 @@ class RunVerdict(NamedTuple):
             "summary": list(self.summary),
             "film": self.film or None,
         }
+
+
+class RunEnd(NamedTuple):
+    """The end of a run, for its verdict."""
+
+    ended: str
+    """One of the values of `RunVerdict.ended`."""
+    words: str
+    """The end in words, for the summary's first line."""
+    failure: str
+    """Why the story failed, else the first trouble; empty if there is neither."""
+
+
+def end_of(robots: Sequence[Services], troubles: Sequence[str]) -> RunEnd:
+    """Return how a run of these robots, or of parts of them, ended.
+
+    A failed story comes first, then an interruption, then a story that was not over, then the troubles.
+    """
+    players = [visitor.player for each in robots if (visitor := each.get(VisitorPart))]
+    failure = next((player.failure for player in players if player and player.failure), "")
+    early = any(each.node.failed for each in robots)
+    ended = FAILED if failure else EARLY if early else TROUBLED if troubles else WELL
+    words, first = _WORDS[ended], failure or next(iter(troubles), "")
+    interrupted = not failure and any(each.node.interrupted for each in robots)
+    return RunEnd(INTERRUPTED if interrupted else ended, words, first)
 
 
 def troubles_of(node: Node, *, judged: bool) -> list[str]:
