@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 from lumen.errors import RobotError
 from lumen.features.naoqi.session import NaoqiSession
+from lumen.upkeep.ratelimit import Backoff
 from lumen.upkeep.threads import WatchedThread
 
 FIRST_RETRY_DELAY, MAX_RETRY_DELAY = 0.5, 10.0
@@ -80,9 +81,8 @@ class Reconnector:
             if self._session.up:
                 self._broken.wait()
             self._broken.clear()
-            pause = self._first
-            while not self._session.up and not self._ending.wait(pause):
-                pause = min(2 * pause, MAX_RETRY_DELAY)
+            backoff = Backoff(self._first, MAX_RETRY_DELAY)
+            while not self._session.up and not self._ending.wait(backoff.next()):
                 self._try()
 
     def _try(self) -> None:

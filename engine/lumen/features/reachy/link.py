@@ -13,6 +13,7 @@ from lumen.errors import RobotError, RobotLostError, RobotUnreachableError
 from lumen.extras import demand
 from lumen.features.reachy.daemon_api import DaemonAddress
 from lumen.features.reachy.pose import JOINTS, head_joints, motor_joints
+from lumen.upkeep.ratelimit import Backoff
 from lumen.upkeep.threads import WatchedThread
 
 if TYPE_CHECKING:
@@ -142,9 +143,8 @@ class ReachyLink:
                     self._receive(self.measured.at + SILENCE)
             except RobotError as error:
                 self._lose(str(error))
-            lost_at, pause = time.monotonic(), FIRST_RETRY_DELAY
-            while not self.up and not self._ending.wait(pause):
-                pause = min(2 * pause, MAX_RETRY_DELAY)
+            lost_at, backoff = time.monotonic(), Backoff(FIRST_RETRY_DELAY, MAX_RETRY_DELAY)
+            while not self.up and not self._ending.wait(backoff.next()):
                 self._try_again(lost_at)
 
     def _lose(self, reason: str) -> None:
