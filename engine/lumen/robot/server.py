@@ -3,7 +3,6 @@
 import logging
 import time
 from collections.abc import Callable, Mapping, Sequence
-from datetime import UTC, datetime
 from functools import partial
 from itertools import count
 from math import inf
@@ -14,6 +13,7 @@ from lumen.feature import table
 from lumen.language.causes import UNKNOWN_ORIGIN, MessageOrigin
 from lumen.language.commands import Say
 from lumen.language.events import RECORDED, Event
+from lumen.language.iso_time import iso_time
 from lumen.language.projects import Project
 from lumen.language.routes import Route
 from lumen.ports import Bus, HasOtherSenses, Image, KnowsListeners, OtherReading, Robot, RobotCommand, Sense
@@ -33,7 +33,7 @@ _log = logging.getLogger(__name__)
 
 
 def _date() -> str:
-    return datetime.now(UTC).isoformat(timespec="milliseconds")
+    return iso_time(time.time(), offset=True)
 
 
 class RobotServer:
