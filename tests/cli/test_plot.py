@@ -14,6 +14,7 @@ from lumen.cli.main import main
 from lumen.fuzzy import Controller
 from lumen.motion import Motion
 from lumen.project.formats.plots import controller_sheet, draw, explained_sheet, motion_sheet
+from tests import ROOT
 from tests.tables import for_each
 
 pytestmark = pytest.mark.rest  # expensive
@@ -107,7 +108,7 @@ def test_the_image_is_there_and_not_blank(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    assert main(["plot", str(Path(lumen.__file__).parents[2] / HEAD)]) == 0
+    assert main(["plot", str(ROOT / HEAD)]) == 0
     assert capsys.readouterr().out == f"wrote {tmp_path / 'head.png'}\n"
     pixels = np.asarray(Image.open("head.png").convert("L"))
     assert pixels.std() > 10

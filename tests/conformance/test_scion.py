@@ -3,7 +3,6 @@
 import json
 from collections.abc import Callable, Iterator, Mapping
 from functools import cache, partial
-from pathlib import Path
 
 import pytest
 
@@ -11,6 +10,7 @@ from lumen.features.formats_charts.scxml import read_scxml, write_scxml
 from lumen.features.formats_charts.xstate import read_xstate, write_xstate
 from lumen.project.formats.conversion_findings import dotted
 from lumen.statechart import Machine
+from tests import ROOT
 from tests.conformance.__main__ import report
 from tests.conformance.cases import Case, cases, machine_of, play, run, table
 from tests.tables import check
@@ -19,7 +19,7 @@ CASES = cases()
 TABLE = table()
 REASONS: Mapping[str, str] = {name: reason for reason, names in TABLE["unsupported"].items() for name in names}
 FOLDERS = sorted({c.name.partition("/")[0] for c in CASES})
-PAGE = Path(__file__).parents[2] / "docs/formats.md"
+PAGE = ROOT / "docs/formats.md"
 PASSING = [c for c in CASES if c.driver is not None and c.name not in REASONS]
 
 
