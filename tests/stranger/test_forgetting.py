@@ -7,7 +7,6 @@ from pathlib import Path
 import pytest
 
 import lumen
-from lumen.cli.run_verdict import troubles_of
 from lumen.feature import resolve
 from lumen.language.people import PersonName
 from lumen.language.stories import Visitor
@@ -89,7 +88,7 @@ def test_a_run_in_which_a_package_failed_to_forget_ends_with_trouble(installed: 
     with lumen.open(root, robot="recording") as exhibition:
         exhibition.services.bus.publish("lumen.NAO.persistence.forgotten", {"name": "Ani"})
         exhibition.run(seconds=1)
-        assert troubles_of(exhibition.node, judged=True) == [FAULTS["gone"], FAULTS["fails"]]
+        assert exhibition.node.faults == [FAULTS["gone"], FAULTS["fails"]]
 
 
 def test_lumen_memory_forget_names_the_package(installed: Installed) -> None:
