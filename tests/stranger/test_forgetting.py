@@ -7,17 +7,20 @@ from pathlib import Path
 import pytest
 
 import lumen
+from lumen.cli.main import main
 from lumen.feature import resolve
 from lumen.language.people import PersonName
 from lumen.language.stories import Visitor
 from lumen.lint import check_files
 from lumen.project.files import read_files
-from lumen.run.forgetting.added import OF_A_PACKAGE, FeatureForgetter, out_of_reach
+from lumen.run.forgetting.added import FILES_ELSEWHERE, FORGOT, OF_A_PACKAGE, FeatureForgetter, of_package
 from tests import ROOT
 from tests.copying import copied_project
 from tests.features.alerts.halls import Hall
 from tests.features.alerts.servers import Web
+from tests.live.test_forgetting import found, hear, running
 from tests.stranger.installing import Installed
+from tests.waiting import HANG, until
 
 MANIFEST = """
 from lumen.feature import Feature
@@ -32,6 +35,19 @@ def fails(person):
 
 def forget(person):
     FORGOTTEN.append(person)
+"""
+HATS = """
+from lumen.feature import Feature
+
+FEATURE = Feature(name="hats", forgets=("hat_list:forget",))
+"""
+NAMED = """
+id: hello
+context: {visitor: ""}
+initial: waits
+states:
+  waits:
+    on: {heard: {actions: {assign: {visitor: "after(event.data.result, 'my name is')"}}}}
 """
 FAULTS = {
     name: f"the installed package `lumen-guests` 1.0 is faulty: `guest_list:{name}` raised {kind} and did not forget a"
@@ -91,9 +107,42 @@ def test_a_run_in_which_a_package_failed_to_forget_ends_with_trouble(installed: 
         assert exhibition.node.faults == [FAULTS["gone"], FAULTS["fails"]]
 
 
-def test_lumen_memory_forget_names_the_package(installed: Installed) -> None:
+def test_lumen_memory_forget_names_the_package(
+    installed: Installed, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     installed.write("lumen-guests", MANIFEST, guest_list=GUESTS)
-    assert ("the installed package `lumen-guests`", OF_A_PACKAGE) in out_of_reach((), broker="")
+    root = copied_project(ROOT / "examples/minimal", tmp_path / "minimal")
+    assert main(["memory", "forget", "Ani", "--project", str(root)]) == 1
+    assert f"not here: {of_package('lumen-guests', OF_A_PACKAGE).where}: {OF_A_PACKAGE}" in capsys.readouterr().out
+
+
+@pytest.mark.process
+@pytest.mark.slow
+def test_lumen_memory_forget_reports_what_the_running_exhibition_forgot(
+    installed: Installed, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    installed.write("lumen-guests", MANIFEST, guest_list=GUESTS)
+    installed.write("lumen-hats", HATS, hat_list=GUESTS)
+    monkeypatch.setenv("PYTHONPATH", f"{installed.folder}:{ROOT / 'engine'}")
+    monkeypatch.setattr("lumen.features.visitors.command.FORGETTING_SPACING", HANG)
+    monkeypatch.setattr("lumen.run.forgetting.files.PATIENCE", HANG)
+    root = copied_project(ROOT / "examples/minimal", tmp_path / "minimal")
+    (root / "behaviors/hello.yaml").write_text(NAMED)
+    (root / "behaviors/stories/visitor.yaml").write_text("title: A visit\nsteps: [{expect: {state: waits}}]\n")
+    with running(root) as (_, bus):
+        hear(bus, "my name is Ani")
+        until(lambda: {"snapshot.json", "journal"} <= set(found(root, "Ani")))
+        assert main(["memory", "forget", "Ani", "--project", str(root)]) == 1
+    told = capsys.readouterr().out.splitlines()
+    assert told[:6] == [
+        "forgot Ani: 0 visitors, 0 entries, 0 pictures",
+        "  deleted: journal: the name, by the running exhibition",
+        "  deleted: snapshot.json: the name, by the running exhibition",
+        f"  asked: the installed package `lumen-hats`: {FORGOT}",
+        "  STILL THERE: the installed package `lumen-guests`:"
+        " `guest_list:fails` raised ValueError and did not forget a person",
+        f"  not here: other machines: {FILES_ELSEWHERE}",
+    ]
 
 
 def test_lint_reports_what_cannot_be_imported(installed: Installed) -> None:

@@ -4,6 +4,7 @@ import argparse
 import json
 import os
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 
 from lumen.bus.addresses import within_process
@@ -23,15 +24,26 @@ from lumen.project.home import home_of
 from lumen.project.main_file import main_settings
 from lumen.project.settings import Settings
 from lumen.run.asking import OPERATOR_ANSWERS, send_request
-from lumen.run.forgetting.added import Forgetting, ForgottenPlace, out_of_reach
-from lumen.run.forgetting.files import forget_in
+from lumen.run.forgetting.added import (
+    FORGOT,
+    OF_A_PACKAGE,
+    Forgetting,
+    ForgottenPlace,
+    forgetting_packages,
+    of_package,
+    out_of_reach,
+)
+from lumen.run.forgetting.files import forget_in, naming_inputs
 from lumen.run.one_robot import one_robot
+from lumen.run.parts.forgetting import FORGETTING_SPACING
 from lumen.run.reaching import reach_exhibition
 
 ANSWER_TIMEOUT = 2.0
 """The time in which a running exhibition's memory must answer [s]; without an answer, all modules are notified."""
 
 WHATS = ("visitors", "journal", "forget")
+PLACES = {"deleted": "deleted", "asked": "asked", "left": "STILL THERE", "elsewhere": "not here"}
+"""The lists of places in a `Forgetting`, with their titles."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -95,8 +107,12 @@ def _forget(options: argparse.Namespace, root: Path, folder: Path) -> int:
     if not name_key(options.name or ""):
         raise UsageError("name the visitor: `lumen memory forget NAME`")
     found, settings = Forgetting(), main_settings(root, one_robot(root, options.robot_name))
-    broker, whole = _tell_running(options, settings, found), draft(read_files(root)).settings
+    named, packages = naming_inputs(folder, options.name), forgetting_packages()
+    broker, whole = _tell_running(options, settings, found, packages), draft(read_files(root)).settings
     forget_in(folder, options.name, found)
+    named -= naming_inputs(folder, options.name) | {place.where for place in found.deleted}
+    found.deleted += [ForgottenPlace(file, "the name, by the running exhibition") for file in sorted(named)]
+    found.elsewhere += [of_package(package, OF_A_PACKAGE) for package in packages]
     found.elsewhere += out_of_reach(whole.routes.values() if whole else (), broker)
     if options.format == "json":
         print(json.dumps(_told(found), ensure_ascii=False))
@@ -106,8 +122,13 @@ def _forget(options: argparse.Namespace, root: Path, folder: Path) -> int:
     return 0 if found.deleted and not found.left else 1
 
 
-def _tell_running(options: argparse.Namespace, settings: Settings | None, found: Forgetting) -> str:
-    """Let the running exhibition forget the visitor too; return the broker's address, empty without a broker."""
+def _tell_running(
+    options: argparse.Namespace, settings: Settings | None, found: Forgetting, packages: dict[str, str]
+) -> str:
+    """Let the running exhibition forget the visitor too; return the broker's address, empty without a broker.
+
+    The packages that it called are removed from `packages`.
+    """
     try:
         reached = reach_exhibition(options.project, options.bus, options.robot_name)
     except BusUnreachableError as error:
@@ -117,9 +138,22 @@ def _tell_running(options: argparse.Namespace, settings: Settings | None, found:
         return "" if within_process(url) else url
     try:
         _request(reached.bus, settings or Settings(), options.name, found)
+        if packages:
+            _ask_packages(reached.bus, _key(settings or Settings(), "forgotten"), options.name, found, packages)
     finally:
         reached.bus.close()
     return reached.broker
+
+
+def _ask_packages(bus: Bus, key: str, name: str, found: Forgetting, packages: dict[str, str]) -> None:
+    """Wait until the running exhibition has called the packages; move them from `packages` to the result."""
+    timeout = ANSWER_TIMEOUT + FORGETTING_SPACING
+    with suppress(BusUnreachableError):
+        answer = next(send_request(bus, key, {"name": name}, OPERATOR_ANSWERS, first=timeout))
+        for package in sorted(packages.keys() & answer["packages"].keys()):
+            fault = answer["packages"][package]
+            (found.left if fault else found.asked).append(of_package(package, fault or FORGOT))
+            del packages[package]
 
 
 def _request(bus: Bus, settings: Settings, name: str, found: Forgetting) -> None:
@@ -152,7 +186,7 @@ def _key(settings: Settings, route: str) -> str:
 def _told(found: Forgetting) -> dict[str, object]:
     return {
         **{"visitors": found.visitors, "entries": found.entries, "pictures": found.pictures},
-        **{name: [place._asdict() for place in getattr(found, name)] for name in ("deleted", "left", "elsewhere")},
+        **{name: [place._asdict() for place in getattr(found, name)] for name in PLACES},
         "others": list(found.others),
     }
 
@@ -161,8 +195,8 @@ def _lines(name: str, folder: Path, found: Forgetting) -> Iterator[str]:
     visitors, pictures = counted(found.visitors, "visitor"), counted(found.pictures, "picture")
     counts = f"{visitors}, {counted(found.entries, 'entry', 'entries')}, {pictures}"
     yield f"forgot {name}: {counts}" if found.deleted else f"{folder} has nothing about {name}"
-    for title, places in (("deleted", found.deleted), ("STILL THERE", found.left), ("not here", found.elsewhere)):
-        yield from (f"  {title}: {where}: {what}" for where, what in places)
+    for kind, title in PLACES.items():
+        yield from (f"  {title}: {where}: {what}" for where, what in getattr(found, kind))
     if found.others:
         yield f"  still remembered, because their names only contain this name: {', '.join(found.others)}"
 

@@ -36,11 +36,14 @@ class Forgetting:
     """The places where data could not be deleted."""
     elsewhere: list[ForgottenPlace] = field(default_factory=list)
     """The places that can't be reached from here."""
+    asked: list[ForgottenPlace] = field(default_factory=list)
+    """The installed packages that the running exhibition called; they do not report what they deleted."""
     others: tuple[str, ...] = ()
     """The names of other visitors that contain the person's name."""
 
 
 FILES_ELSEWHERE = "each machine that runs a part has its own files: run the command there, too"
+FORGOT = "it has forgotten what it keeps itself about the person, if anything"
 OF_A_PACKAGE = "what it keeps itself: it forgets only while an exhibition runs"
 COPIES = "videos, sounds and transcripts of runs, recordings that were moved, copies and backups of these files"
 
@@ -62,11 +65,19 @@ def out_of_reach(routes: Iterable[Route], broker: str) -> Iterator[ForgottenPlac
             yield ForgottenPlace(
                 f"the broker's {queues}", "messages that no process could use, for up to 7 days and an hour"
             )
-    for distribution in dict.fromkeys(distribution_of(feature) for feature, _ in rows("forgets")):
-        if distribution:
-            yield ForgottenPlace(f"the installed package `{distribution.name}`", OF_A_PACKAGE)
     yield ForgottenPlace("other machines", FILES_ELSEWHERE)
     yield ForgottenPlace("other files", COPIES)
+
+
+def forgetting_packages() -> dict[str, str]:
+    """Return the names of the installed packages that forget a person, each with an empty text for its fault."""
+    found = (distribution_of(feature) for feature, _ in rows("forgets"))
+    return {distribution.name: "" for distribution in found if distribution}
+
+
+def of_package(name: str, what: str) -> ForgottenPlace:
+    """Return the place of the data that an installed package keeps itself."""
+    return ForgottenPlace(f"the installed package `{name}`", what)
 
 
 _log = logging.getLogger(__name__)
@@ -82,19 +93,25 @@ class FeatureForgetter:
     def __init__(self, find: Callable[[type[Any]], Any], failed: Callable[[str], None]) -> None:
         self._find, self._failed = find, failed
 
-    def forget(self, person: PersonName) -> None:
-        """Call the forgetting function, or the `forget` of the part, of each feature's row."""
+    def forget(self, person: PersonName) -> dict[str, str]:
+        """Call the forgetting function, or the `forget` of the part, of each feature's row.
+
+        Return the names of the installed packages that were called, each with its last fault, or an empty text.
+        """
+        called = forgetting_packages()
         for feature, where in rows("forgets"):
             try:
                 self._forget(resolve(where), person)
             except KeyboardInterrupt:
                 raise
             except BaseException as error:  # a package's code may even raise SystemExit
-                if distribution_of(feature) is None:
+                if (distribution := distribution_of(feature)) is None:
                     raise
-                fault = faulty(feature, f"`{where}` raised {type(error).__name__} and did not forget a person")
+                what = f"`{where}` raised {type(error).__name__} and did not forget a person"
+                called[distribution.name], fault = what, str(faulty(feature, what))
                 _log.error("%s", fault)
-                self._failed(str(fault))
+                self._failed(fault)
+        return called
 
     def _forget(self, named: Any, person: PersonName) -> None:
         if not isinstance(named, type):

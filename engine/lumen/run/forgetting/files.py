@@ -115,6 +115,13 @@ def _drafts(folder: Path) -> None:
                 draft.unlink()
 
 
+def naming_inputs(folder: Path, name: str) -> set[str]:
+    """Return which files of a running exhibition name a person: its snapshot and its journal. Empty if none runs."""
+    person = PersonName(name)
+    named = {SNAPSHOT_FILE: _names(folder / SNAPSHOT_FILE, person), JOURNAL_FOLDER: _names_in_journal(folder, person)}
+    return {file for file, names in named.items() if names and Home(folder).held()}
+
+
 def _left(folder: Path, person: PersonName) -> Iterator[ForgottenPlace]:
     """Yield the files that still contain the name."""
     for file in sorted(folder.rglob("*.json*")):
