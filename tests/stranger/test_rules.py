@@ -40,6 +40,21 @@ def other(draft):
     draft.main(LATER, ("name",), "the rules after a faulty one are applied")
 """
 
+REPEATING = """
+from lumen.feature import Feature
+
+FEATURE = Feature(name="repeating", rules=("repeating_rules:check",), codes=("repeating_rules",))
+"""
+REPEATING_RULES = """
+from lumen.language.diagnostics import WARNING, Code
+from lumen.project.complaints import MISSING_KEY
+
+UNKNOWN = Code("unknown-key", "names", WARNING, "a key of another package")
+
+def check(draft):
+    pass
+"""
+
 
 @pytest.fixture
 def project(tmp_path: Path) -> Path:
@@ -64,6 +79,14 @@ def test_its_finding_is_listed_and_its_code_can_be_selected(stranger: Path, proj
         main(["lint", str(project), "--format", "json", "--select", select])
         assert [d["code"] for d in json.loads(capsys.readouterr().out)["diagnostics"]] == [CODE] * count
     assert "names" in families()
+
+
+def test_a_code_of_lumen_is_not_replaced(installed: Installed) -> None:
+    installed.write("lumen-repeating", REPEATING, repeating_rules=REPEATING_RULES)
+    assert (codes()["unknown-key"].family, codes()["unknown-key"].summary) == ("shape", "a key is not allowed here")
+    (only,) = found(BASE)
+    assert "the installed package `lumen-repeating` 1.0 is faulty: its code `unknown-key` is ignored" in only
+    assert "the feature `core` has that name" in only
 
 
 @pytest.mark.process

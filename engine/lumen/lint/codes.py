@@ -3,11 +3,11 @@
 `grep -rn '"cut-short"' engine` finds a code's severity, summary and check; `pages/cut-short.md` explains it.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from functools import cache
 from itertools import chain
 
-from lumen.feature import resolve, rows
+from lumen.feature import Feature, FeatureFault, distribution_of, resolve, rows
 from lumen.language.diagnostics import Code, Severity
 from lumen.project.broken_features import faults_reported
 
@@ -22,12 +22,19 @@ FAMILY_ORDER = (
 def codes() -> Mapping[str, Code]:
     """Return every code by its name, sorted by family and name.
 
-    Of two codes with the same name, the first declared counts.
+    Of two codes with the same name, Lumen's own counts, else the first declared.
     """
-    declared: dict[str, Code] = {}
-    for code in _declared():
-        declared.setdefault(code, code)
-    return {code: code for code in sorted(declared.values(), key=_order)}
+    return {code: code for code in sorted((code for _, code in _first_declared().values()), key=_order)}
+
+
+def repeated_codes() -> Collection[FeatureFault]:
+    """Return a fault for each code of an installed package that is ignored because of an earlier one of its name."""
+    declared = ((distribution_of(feature), code, *_first_declared()[code]) for feature, code in _declared())
+    return dict.fromkeys(
+        FeatureFault(distribution, f"its code `{code}` is ignored: the feature `{owner.name}` has that name")
+        for distribution, code, owner, first in declared
+        if distribution and first is not code
+    )
 
 
 @cache
@@ -37,13 +44,24 @@ def families() -> Mapping[str, Mapping[str, Code]]:
     return {family: {code: code for code in codes().values() if code.family == family} for family in names}
 
 
-def _declared() -> Iterator[Code]:
+@cache
+def _first_declared() -> Mapping[str, tuple[Feature, Code]]:
+    """Return the code that counts of each name, and its feature."""
+    declared: dict[str, tuple[Feature, Code]] = {}
+    for feature, code in _declared():
+        declared.setdefault(code, (feature, code))
+    return declared
+
+
+def _declared() -> Iterator[tuple[Feature, Code]]:
+    """Yield the codes with their features, Lumen's own first."""
     of_sections = ((feature, where) for feature, (_, where) in rows("section_rules"))
-    for feature, where in chain(rows("rules"), of_sections, rows("last_rules"), rows("codes")):
+    modules = chain(rows("rules"), of_sections, rows("last_rules"), rows("codes"))
+    for feature, where in sorted(modules, key=lambda row: distribution_of(row[0]) is not None):
         found: Mapping[str, object] = {}
         with faults_reported(feature, where, []):  # lint reports such a fault
             found = vars(resolve(where.partition(":")[0]))
-        yield from (value for value in found.values() if isinstance(value, Code) and _is_sound(value))
+        yield from ((feature, value) for value in found.values() if isinstance(value, Code) and _is_sound(value))
 
 
 def _is_sound(code: Code) -> bool:

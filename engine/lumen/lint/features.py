@@ -2,8 +2,9 @@
 
 from collections.abc import Iterator
 
-from lumen.feature import Feature, distribution_of, resolve, rows
-from lumen.project.broken_features import broken_features, faults_reported
+from lumen.feature import Feature, distribution_of, found, resolve, rows
+from lumen.lint.codes import repeated_codes
+from lumen.project.broken_features import broken, broken_features, faults_reported
 from lumen.project.draft import ProjectDraft
 
 
@@ -14,6 +15,8 @@ def check(draft: ProjectDraft) -> None:
         if distribution_of(feature):
             with faults_reported(feature, f"its module `{where}`", draft.loose):
                 resolve(where)
+    if found().installed:
+        draft.loose += (broken(*fault) for fault in repeated_codes())
 
 
 def _imported() -> Iterator[tuple[Feature, str]]:
