@@ -54,6 +54,17 @@ def test_one_that_cannot_be_imported_names_its_distribution(
     assert main(["explain", "cut-short"]) == 0
 
 
+@pytest.mark.process
+def test_a_package_that_cannot_be_loaded_is_named(installed: Installed, capsys: pytest.CaptureFixture[str]) -> None:
+    installed.write("faulty", "1 / 0")
+    named = "(not loaded, because of faults that `lumen lint` reports: faulty 1.0)"
+    for words, code in ((["wave"], 2), (["--help"], 0)):
+        with pytest.raises(SystemExit) as left:
+            main(words)
+        assert left.value.code == code
+        assert named in " ".join("".join(capsys.readouterr()).split())
+
+
 def test_one_with_the_name_of_another_is_ignored_and_reported(installed: Installed) -> None:
     installed.write("faulty", MANIFEST, faulty_wave="")
     assert main(["lint", str(PROJECT), "--strict"]) == 1

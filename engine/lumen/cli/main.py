@@ -14,7 +14,7 @@ from typing import Any
 import lumen
 from lumen.cli.intermixed import Help, Intermixed
 from lumen.cli.streams import complain, finish, hush, open_streams
-from lumen.cli.suggesting import Suggesting, parse
+from lumen.cli.suggesting import Suggesting, parse, unusable
 from lumen.errors import LumenError, ProjectError
 from lumen.feature import Subcommand, distribution_of, found, owner, resolve, table
 from lumen.upkeep.garbage import gc_paused
@@ -69,7 +69,7 @@ def command_line(wanted: Collection[str]) -> Suggesting:
 
 def _packages() -> str:
     named = ", ".join(map(str, dict.fromkeys(found().installed.values())))
-    return f" Installed packages with features: {named}." if named else ""
+    return (f" Installed packages with features: {named}." if named else "") + unusable()
 
 
 def _configure(command: Suggesting, verb: str, row: Subcommand) -> None:

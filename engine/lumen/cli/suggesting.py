@@ -4,6 +4,8 @@ import argparse
 from collections.abc import Sequence
 from typing import Any
 
+from lumen.feature import found
+
 
 class Suggesting(argparse.ArgumentParser):
     """Python's parser, with a suggestion for an unknown verb, option or choice."""
@@ -31,7 +33,7 @@ class Suggesting(argparse.ArgumentParser):
         if action.choices is None or value in action.choices:
             return
         if isinstance(action, argparse._SubParsersAction):
-            raise argparse.ArgumentError(None, f"no verb `{value}`{_meant(value, action.choices)}")
+            raise argparse.ArgumentError(None, f"no verb `{value}`{_meant(value, action.choices)}{unusable()}")
         from lumen.language.diagnostics import did_you_mean  # only needed for a wrong choice
 
         hint = did_you_mean(value, map(str, action.choices), "choose one of")
@@ -47,6 +49,12 @@ def parse(parser: Suggesting, arguments: Sequence[str]) -> argparse.Namespace:
     if left:
         parser.verbs[options.verb].refuse(left)
     return options
+
+
+def unusable() -> str:
+    """Return a remark that names the installed packages whose features can't be used; empty if there are none."""
+    named = dict.fromkeys(str(each) for each, _ in found().faults if each not in found().installed.values())
+    return f" (not loaded, because of faults that `lumen lint` reports: {', '.join(named)})" if named else ""
 
 
 def _meant(word: str, known: Any) -> str:
