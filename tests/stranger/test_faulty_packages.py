@@ -160,3 +160,83 @@ def test_a_part_with_wrong_needs_is_left_out(needs: str, installed: Installed) -
     with lumen.open(ROOT / "examples/minimal", robot="recording") as exhibition:
         [fault] = exhibition.node.faults
     assert f"raised TypeError: `needs` of the part is {needs}: write a tuple of names" in fault
+
+
+EXTRA = """
+class Zap:
+    def configure(self, parser): {configure}
+    def check(self, *given): {check}
+    def wishes(self, *given): {wishes}
+    def more(self, found, *given): {more}
+"""
+SOUND = {"configure": "pass", "check": "pass", "wishes": "return {}", "more": "return found"}
+
+
+@pytest.mark.process
+@pytest.mark.parametrize(
+    ("kind", "faulty", "fault"),
+    [
+        ("run", None, "ModuleNotFoundError: No module named 'nosuch'"),
+        ("run", {"configure": "exit(0)"}, "SystemExit: 0"),
+        (
+            "run",
+            {"configure": "parser.add_argument('--voice')"},
+            "ArgumentError: argument --voice: conflicting option string: --voice",
+        ),
+        ("run", {"wishes": "pass"}, "TypeError: `wishes` returned None instead of options by name"),
+        ("run", {"wishes": "return {3: 4}"}, "TypeError: `wishes` returned {3: 4} instead of options by name"),
+        ("lint", None, "ModuleNotFoundError: No module named 'nosuch'"),
+        ("lint", {"configure": "1 / 0"}, "ZeroDivisionError: division by zero"),
+        ("lint", {"check": "1 / 0"}, "ZeroDivisionError: division by zero"),
+        ("lint", {"more": "pass"}, "TypeError: `more` returned None instead of a list of `Findings`"),
+        ("lint", {"more": "return [3]"}, "TypeError: `more` returned [3] instead of a list of `Findings`"),
+    ],
+)
+def test_faulty_options_are_left_out_of_a_command(
+    kind: str, faulty: dict[str, str] | None, fault: str, installed: Installed, hall: Path,
+    capsys: pytest.CaptureFixture[str],
+) -> None:  # fmt: skip
+    where = "faulty_code:Zap" if faulty else "nosuch:Zap"
+    code = EXTRA.format(**SOUND | (faulty or {}))
+    installed.write("faulty", MANIFEST.format(row=f"{kind}_options=('{where}',)"), faulty_code=code)
+    assert main(RUN if kind == "run" else ["lint"]) == 0
+    told = capsys.readouterr()
+    [line] = told.err.splitlines()
+    assert f"{FAULT}its options `{where}` raised {fault} (update" in line
+    assert ("All well" if kind == "run" else "files checked") in told.out
+
+
+def test_of_two_packages_with_the_same_option_the_second_is_left_out(
+    installed: Installed, hall: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    code = EXTRA.format(**SOUND | {"configure": "parser.add_argument('--zap', action='store_true')"})
+    row = "lint_options=('faulty_code:Zap',)"
+    installed.write("early", MANIFEST.format(row=row).replace("faulty'", "early'", 1), faulty_code=code)
+    installed.write("faulty", MANIFEST.format(row=row))
+    assert main(["lint", "--zap"]) == 0
+    [line] = capsys.readouterr().err.splitlines()
+    assert f"{FAULT}its options `faulty_code:Zap` raised ArgumentError: argument --zap: conflicting" in line
+
+
+@pytest.mark.process
+def test_a_run_starts_without_what_a_package_should_do_before(
+    installed: Installed, hall: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    installed.write("faulty", MANIFEST.format(row="before_start=('nosuch:finish',)"))
+    assert main(RUN) == 0
+    assert capsys.readouterr().err.count(f"{FAULT}its `nosuch:finish` raised ModuleNotFoundError") == 1
+
+
+@pytest.mark.process
+def test_a_faulty_report_does_not_hide_the_error_of_a_run(
+    installed: Installed, hall: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    installed.write(
+        "faulty", MANIFEST.format(row="failures=('faulty_code:tell',)"), faulty_code="def tell(failure): return exit"
+    )
+    main_file = hall / "lumen.yaml"
+    main_file.write_text(f"{main_file.read_text()}\nlights: 3\n")
+    assert main(["run"]) == 1
+    told = capsys.readouterr()
+    assert f"{FAULT}its `faulty_code:tell` raised SystemExit" in told.err
+    assert "`lights` is not a key" in told.out + told.err

@@ -1,17 +1,21 @@
 """Options that features add to `lumen run` and `lumen lint`."""
 
 import argparse
-from collections.abc import Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, Protocol
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
-from lumen.feature import rows
-from lumen.project.broken_features import called
+from lumen.cli.streams import complain
+from lumen.errors import LumenError
+from lumen.feature import distribution_of, resolve, rows
+from lumen.project.broken_features import faults_told
 
 if TYPE_CHECKING:  # not at run time: `lumen lint` of unchanged files loads none of them
     from lumen.language.projects import Project
     from lumen.language.stories import Story
     from lumen.run.linting.findings import Findings
     from lumen.run.linting.targets import Wanted
+
+T = TypeVar("T")
 
 
 class RunExtra(Protocol):
@@ -52,11 +56,31 @@ class LintExtra(Protocol):
         ...
 
 
-def run_extras() -> Iterator[RunExtra]:
-    """Return the options that features add to `lumen run`, in the order of the features."""
-    return (called(feature, where) for feature, where in rows("run_options"))
+def configure_extras(parser: argparse.ArgumentParser, kind: str, *, installed: bool) -> None:
+    """Add the options of the rows of a kind to a parser: those of installed packages, or those that come with Lumen.
+
+    Those of packages come last, so that no option of Lumen meets one of the same name. A package's options with a fault
+    are left out, and the fault is printed.
+    """
+    extras = parser.get_default("extras") or []
+    parser.set_defaults(extras=extras)
+    for feature, where in rows(kind):
+        if installed == bool(distribution_of(feature)):
+            with faults_told(feature, f"its options `{where}`", complain):
+                extra = resolve(where)()
+                extra.configure(parser)
+                extras.append((feature, where, extra))
 
 
-def lint_extras() -> Iterator[LintExtra]:
-    """Return the options that features add to `lumen lint`, in the order of the features."""
-    return (called(feature, where) for feature, where in rows("lint_options"))
+def of_extras(options: argparse.Namespace, call: Callable[[Any], T]) -> list[T]:
+    """Return the result of `call` for each class of options that features added, in the order of the features.
+
+    LumenErrors are raised. After any other error of a package, its options are left out, and the fault is printed.
+    """
+    extras, options.extras = options.extras, []
+    found: list[T] = []
+    for feature, where, extra in extras:
+        with faults_told(feature, f"its options `{where}`", complain, LumenError):
+            found.append(call(extra))
+            options.extras.append((feature, where, extra))
+    return found

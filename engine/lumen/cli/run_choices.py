@@ -1,14 +1,15 @@
 """The story, the language and the length of a run, from the options of `lumen run`."""
 
 import argparse
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
-from lumen.cli.extras import run_extras
+from lumen.cli.extras import RunExtra, of_extras
 from lumen.errors import UsageError
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.projects import Project
 from lumen.language.stories import Story
+from lumen.project.broken_features import shown
 from lumen.project.units import seconds
 from lumen.run.chosen_stories import stories_of
 from lumen.run.presence import ROBOT_PART
@@ -82,7 +83,11 @@ def wishes(options: argparse.Namespace, project: Project, story: Story | None, p
 
     Raises UsageError if they can't be fulfilled.
     """
-    found: dict[str, Any] = {}
-    for extra in run_extras():
-        found |= extra.wishes(options, project, story, period)
-    return found
+
+    def wished(extra: RunExtra) -> Mapping[str, Any]:
+        found = extra.wishes(options, project, story, period)
+        if isinstance(found, Mapping) and all(isinstance(name, str) for name in found):
+            return found
+        raise TypeError(f"`wishes` returned {shown(found)} instead of options by name")
+
+    return {name: value for found in of_extras(options, wished) for name, value in found.items()}

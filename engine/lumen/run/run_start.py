@@ -6,10 +6,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from lumen.errors import BusError, LumenError, ModuleError, ProjectError, RobotError, UsageError
-from lumen.feature import described, rows
+from lumen.feature import Feature, described, resolve, rows
 from lumen.language.diagnostics import Severity
 from lumen.language.projects import Project
-from lumen.project.broken_features import called, package_at_fault
+from lumen.project.broken_features import called, faults_told, package_at_fault
 from lumen.project.main_file import main_settings
 from lumen.project.settings import Settings
 from lumen.run.presence import BRAIN, ROBOT_PART
@@ -64,7 +64,7 @@ class Failures:
     ) -> None:
         self._root, self._directories, self._parts, self._tell = root, directories, parts, tell
         self._wanted = wanted
-        self._waiting: list[Callable[[], None]] = []
+        self._waiting: list[tuple[Feature, str, Callable[[], None]]] = []
 
     def report(self, error: Exception, robots: Sequence[str]) -> None:
         """Report an error that ended these robots; an error of the environment does not count as a crash."""
@@ -72,7 +72,7 @@ class Failures:
             for feature, where in rows("failures"):
                 try:
                     if wait := called(feature, where, self._failure(error, robots)):
-                        self._waiting.append(wait)
+                        self._waiting.append((feature, where, wait))
                 except Exception as other:
                     self._tell(f"no alert could be sent: {described(other)}")
         if isinstance(error, OUTSIDE):
@@ -81,8 +81,9 @@ class Failures:
 
     def close(self) -> None:
         """Wait until all reports are sent."""
-        for wait in self._waiting:
-            wait()
+        for feature, where, wait in self._waiting:
+            with faults_told(feature, f"its `{where}`", self._tell):
+                wait()
 
     def _failure(self, error: Exception, robots: Sequence[str]) -> RunFailure:
         directory = self._directories[robots[0]]
@@ -136,7 +137,8 @@ def started(
         stack.callback(failures.close)
         try:
             for feature, where in rows("before_start"):
-                called(feature, where, root)
+                with faults_told(feature, f"its `{where}`", tell, LumenError):
+                    resolve(where)(root)
             projects = {
                 name: startup_project(root, directory, last_good=last_good, warn=tell)
                 for name, directory in directories.items()
