@@ -6,7 +6,10 @@ import pytest
 
 import lumen
 from lumen.cli.main import main
-from lumen.feature import features
+from lumen.errors import ExpressionError
+from lumen.expressions import Scope, compile_expression
+from lumen.feature import VerbRow, features
+from lumen.language.added_verbs import arguments_of, durations_of, short_argument
 from lumen.project.broken_features import shown
 from tests import ROOT
 from tests.copying import copied_project
@@ -240,3 +243,19 @@ def test_a_faulty_report_does_not_hide_the_error_of_a_run(
     told = capsys.readouterr()
     assert f"{FAULT}its `faulty_code:tell` raised SystemExit" in told.err
     assert "`lights` is not a key" in told.out + told.err
+
+
+def test_an_exact_function_that_cannot_be_imported_fails_only_where_it_is_called(installed: Installed) -> None:
+    installed.write(
+        "faulty", MANIFEST.format(row="functions={'odd': FunctionRow('nosuch:odd', (), 'text', exact=True)}")
+    )
+    assert compile_expression("contains('ab', 'a')")(Scope()) is True
+    with pytest.raises(ExpressionError, match=r"No module named 'nosuch' \(package faulty 1\.0\)"):
+        compile_expression("odd()")(Scope())
+
+
+def test_a_property_of_a_verb_may_have_true_or_false_as_its_schema() -> None:
+    row = VerbRow("a", arguments={"properties": {"no": False, "any": True}, "required": ["any"]}, result={"a": True})
+    assert short_argument(row) == ""
+    assert durations_of(row) == frozenset()
+    assert arguments_of(row, {"any": 3}) == {"any": 3}

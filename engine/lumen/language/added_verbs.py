@@ -62,7 +62,7 @@ def short_argument(row: VerbRow) -> str:
 
     It is the only required argument, if its schema has a type other than `object`.
     """
-    required, properties = row.arguments.get("required", ()), row.arguments.get("properties", {})
+    required, properties = row.arguments.get("required", ()), _properties(row.arguments)
     only = required[0] if len(required) == 1 else ""
     return only if only in properties and properties[only].get("type") not in (None, "object") else ""
 
@@ -76,8 +76,7 @@ def arguments_of(row: VerbRow, data: Any) -> dict[str, Any]:
 
 def durations_of(row: VerbRow) -> frozenset[str]:
     """Return the names of the arguments that are durations."""
-    properties = row.arguments.get("properties", {})
-    return frozenset(name for name, schema in properties.items() if schema.get("format") == "duration")
+    return frozenset(name for name, schema in _properties(row.arguments).items() if schema.get("format") == "duration")
 
 
 def given_arguments(row: VerbRow, data: Any) -> Mapping[str, Any]:
@@ -151,5 +150,10 @@ def is_template(command: Do) -> bool:
 
 
 def _defaults(schema: Mapping[str, Any]) -> dict[str, Any]:
+    return {name: inner["default"] for name, inner in _properties(schema).items() if "default" in inner}
+
+
+def _properties(schema: Mapping[str, Any]) -> dict[str, Mapping[str, Any]]:
+    """Return the schemas of an object's properties; an empty one for a schema that is only true or false."""
     properties = schema.get("properties", {})
-    return {name: inner["default"] for name, inner in properties.items() if "default" in inner}
+    return {name: inner if isinstance(inner, Mapping) else {} for name, inner in properties.items()}
