@@ -10,7 +10,9 @@ from lumen.errors import ExpressionError
 from lumen.expressions import Scope, compile_expression
 from lumen.feature import VerbRow, features
 from lumen.language.added_verbs import arguments_of, durations_of, short_argument
+from lumen.lint import check_files
 from lumen.project.broken_features import shown
+from lumen.project.files import read_files
 from tests import ROOT
 from tests.copying import copied_project
 from tests.stranger.installing import Installed
@@ -259,3 +261,63 @@ def test_a_property_of_a_verb_may_have_true_or_false_as_its_schema() -> None:
     assert short_argument(row) == ""
     assert durations_of(row) == frozenset()
     assert arguments_of(row, {"any": 3}) == {"any": 3}
+
+
+SETTINGS = (
+    "from dataclasses import dataclass\nSCHEMA = {}\n@dataclass(frozen=True)\nclass Hall:\n    size: object = 1\n"
+)
+
+
+@pytest.mark.process
+@pytest.mark.parametrize(
+    ("code", "fault"),
+    [
+        ("return Hall(lambda: 1)", "Can't pickle"),
+        ("report.diagnostics.append(7); return Hall(2)", "TypeError: `faulty_code:read` reported [7], which"),
+        ("report.diagnostics = None; return Hall(2)", "TypeError: `faulty_code:read` reported None, which"),
+        ("1 / 0", "ZeroDivisionError: division by zero"),
+    ],
+)  # fmt: skip
+def test_lint_and_run_report_once_that_a_section_cannot_be_read(
+    code: str, fault: str, installed: Installed, hall: Path, capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:  # fmt: skip
+    monkeypatch.setenv("PYTHONPATH", f"{installed.folder}:{ROOT / 'engine'}")  # for the process that reads the files
+    row = "sections={'zap': Section('faulty_code:read', 'faulty_code:SCHEMA')}"
+    installed.write("faulty", MANIFEST.format(row=row), faulty_code=f"{SETTINGS}def read(data, report): {code}\n")
+    main_file = hall / "lumen.yaml"
+    main_file.write_text(f"{main_file.read_text()}\nzap: {{}}  # {fault}\n")
+    assert main(["lint"]) == 0
+    assert capsys.readouterr().out.count(f"{FAULT}reading `zap` raised ") == 1
+    assert main(RUN) == 0
+    [line] = capsys.readouterr().err.splitlines()
+    assert f"warning [broken-feature] {FAULT}reading `zap` raised " in line
+    assert fault in line
+
+
+@for_each(
+    ("where", "code", "fault"),
+    [
+        ("nosuch:f", "", "ModuleNotFoundError: No module named 'nosuch'"),
+        ("faulty_code:f", "def f(*given, **named): 1 / 0", "ZeroDivisionError: division by zero"),
+        (
+            "faulty_code:f",
+            "def f(*given, **named): return 7",
+            "TypeError: `faulty_code:f` returned 7, which is no",
+        ),
+        (
+            "faulty_code:f",
+            "from lumen.feature import *\ndef f(*given, **named): return VerbRow(3)",
+            "TypeError: `faulty_code:f` returned VerbRow(performer=3,",
+        ),
+    ],
+)
+def test_lint_reports_a_faulty_reader_of_verbs_at_the_file(
+    where: str, code: str, fault: str, installed: Installed, hall: Path
+) -> None:
+    installed.write("faulty", MANIFEST.format(row=f"verb_files={{'motions': '{where}'}}"), faulty_code=code)
+    wave = hall / "motions/wave.yaml"
+    wave.write_text(f"{wave.read_text()}# {fault}\n")
+    (finding,) = [each for each in check_files(hall, read_files(hall))[1] if each.code == "broken-feature"]
+    assert finding.place.file == "motions/wave.yaml"
+    assert finding.message.startswith(f"{FAULT}reading the verb `wave` raised {fault}")

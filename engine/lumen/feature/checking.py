@@ -36,13 +36,13 @@ def wrong_rows(feature: Feature) -> Iterator[str]:
         rows_of = tuple(value.values() if isinstance(value, Mapping) else value)
         if wrong := [each for each in rows_of if not isinstance(each, get_origin(row) or row)]:
             yield f"`{kind}` of its manifest has the row `{wrong[0]!r}`, which is no `{row.__name__}`"
-        elif fields := [fault for each in rows_of if isinstance(each, tuple) for fault in _wrong_fields(each)]:
+        elif fields := [fault for each in rows_of if isinstance(each, tuple) for fault in wrong_fields(each)]:
             yield f"a row of `{kind}` of its manifest has {fields[0]}"
         else:
             yield from (f"`{kind}` of its manifest is faulty: {fault}" for each in rows_of if (fault := _fault(each)))
 
 
-def _wrong_fields(row: Any) -> Iterator[str]:
+def wrong_fields(row: Any) -> Iterator[str]:
     """Yield a description of each field whose type differs from the declared one, and of each required empty text."""
     for name, declared in get_type_hints(type(row)).items():
         kind, value = get_origin(declared) or declared, getattr(row, name)
@@ -53,7 +53,7 @@ def _wrong_fields(row: Any) -> Iterator[str]:
         elif kind is tuple and (wrong := [each for each in value if not isinstance(each, get_args(declared)[0])]):
             yield f"`{wrong[0]!r}` in `{name}`, which is no {get_args(declared)[0].__name__}"
         elif kind is tuple:
-            yield from (fault for each in value if isinstance(each, tuple) for fault in _wrong_fields(each))
+            yield from (fault for each in value if isinstance(each, tuple) for fault in wrong_fields(each))
 
 
 def _fault(row: Any) -> str:

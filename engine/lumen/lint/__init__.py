@@ -6,12 +6,12 @@ from itertools import chain
 from pathlib import Path
 
 from lumen.feature import Feature, distribution_of, resolve, rows
-from lumen.language.diagnostics import Diagnostic, Place, Severity, has_errors
+from lumen.language.diagnostics import Diagnostic, has_errors
 from lumen.language.projects import Project
 from lumen.lint.codes import codes
 from lumen.lint.ignores import obey
 from lumen.lint.several_robots import together
-from lumen.project.broken_features import broken, faults_reported, shown
+from lumen.project.broken_features import broken, faults_reported, is_finding, shown
 from lumen.project.building import assemble, draft
 from lumen.project.chosen_robot import as_robot, chosen_robot
 from lumen.project.draft import ProjectDraft
@@ -89,13 +89,6 @@ def _apply(feature: Feature, rule: str, found: ProjectDraft) -> None:
 def _remove_unsound(found: ProjectDraft) -> Iterator[object]:
     """Remove values that are not valid findings from a draft, and yield them."""
     for findings in (found.loose, *(report.diagnostics for report in found.reports.values())):
-        unsound = [each for each in findings if not _is_sound(each)]
+        unsound = [each for each in findings if not is_finding(each)]
         findings[:] = (each for each in findings if each not in unsound)
         yield from unsound
-
-
-def _is_sound(finding: object) -> bool:
-    match finding:
-        case Diagnostic(str(), str(), Place(str(), int(), int(), int(), int()), str(), Severity(), tuple()):
-            return True
-    return False

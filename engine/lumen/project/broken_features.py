@@ -8,7 +8,7 @@ from typing import Any
 from lumen.distributions import Distribution, distributions
 from lumen.errors import LumenError, UsageError
 from lumen.feature import Feature, FeatureFault, described, distribution_of, found, resolve
-from lumen.language.diagnostics import WARNING, Code, Diagnostic, Place
+from lumen.language.diagnostics import WARNING, Code, Diagnostic, Place, Severity
 from lumen.project.packaged import PACKAGE
 from lumen.project.project_folders import MAIN_FILE
 
@@ -151,6 +151,14 @@ def shown(value: object) -> str:
     except Exception:
         text = f"<{type(value).__name__}>"
     return text if len(text) <= 80 else f"{text[:77]}…"
+
+
+def is_finding(value: object) -> bool:
+    """Return True if a value, added to a report by code of a package, is a finding that can be shown."""
+    match value:
+        case Diagnostic(str(), str(), Place(str(), int(), int(), int(), int()), str(), Severity(), tuple()):
+            return True
+    return False
 
 
 def fault_of_package(error: BaseException) -> str:

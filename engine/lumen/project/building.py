@@ -1,17 +1,18 @@
 """Build a whole project: all its files into a `ProjectDraft`, and a draft without errors into a `Project`."""
 
 import hashlib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import PurePosixPath
 from typing import Any, TypeVar
 from unicodedata import normalize
 
-from lumen.feature import VerbRow, resolve, rows, table
+from lumen.feature import Feature, VerbRow, resolve, rows
+from lumen.feature.checking import wrong_fields
 from lumen.fuzzy.controllers_by_role import by_role
 from lumen.language.added_verbs import UNUSABLE
-from lumen.language.diagnostics import ERROR, WARNING, Code, Severity, has_errors
+from lumen.language.diagnostics import ERROR, WARNING, Code, Diagnostic, Severity, has_errors
 from lumen.language.folders import FUNCTIONS_FOLDER, KNOWLEDGE_FOLDER, QUESTIONS_FOLDER, SAYINGS_FOLDER
 from lumen.language.json_paths import values_in
 from lumen.language.machines import MachineDefinition
@@ -24,12 +25,13 @@ from lumen.language.verbs import is_built_in
 from lumen.project.added_verbs import NO_VERBS, OwnVerbs
 from lumen.project.behaviors import build_machine
 from lumen.project.bodies import build_body, build_likes
-from lumen.project.broken_features import faults_reported
+from lumen.project.broken_features import BROKEN_FEATURE, faults_reported, resolved, shown
 from lumen.project.built_file import Build, BuiltFile, read_file
 from lumen.project.chosen_model import chosen
 from lumen.project.chosen_robot import chosen_robot
 from lumen.project.common_words import COMMON, COMMON_FILE, is_shipped, with_common_words
 from lumen.project.controllers import build_controller
+from lumen.project.document_report import DocumentReport
 from lumen.project.draft import ProjectDraft
 from lumen.project.files import LEADS_OUT, MISTAKEN_FOLDERS, Unreadable, fingerprint
 from lumen.project.functions import build_function, joined
@@ -266,14 +268,31 @@ def _verbs(found: ProjectDraft) -> OwnVerbs:
     languages = found.settings.languages if found.settings else ()
     verbs: dict[str, VerbRow] = {}
     contents = hashlib.sha256(repr(languages).encode())
-    for folder, build in table("verb_files").items():
+    for feature, (folder, where) in rows("verb_files"):
         if not any(file.startswith(f"{folder}/") for file in found.files):
             continue  # most projects have none, and then the reader need not be imported
-        built = _built(_each(found, folder, partial(resolve(build), languages=languages), around=languages))
+        build = partial(_verb, feature, where, languages=languages)
+        files = _each(found, folder, build, around=languages)
+        found.loose += (d for each in files.values() for d in each.report.diagnostics if d.code == BROKEN_FEATURE)
+        built = _built(files)
         verbs |= {name: built.get(name, UNUSABLE) for name in sorted(found.names[folder]) if not is_built_in(name)}
         for name in sorted(found.names[folder]):
             contents.update(name.encode() + found.files[f"{folder}/{name}.yaml"])
     return OwnVerbs(verbs, contents.hexdigest()) if verbs else NO_VERBS
+
+
+def _verb(
+    feature: Feature, where: str, data: Any, report: DocumentReport, *, name: str, languages: Sequence[str]
+) -> VerbRow | None:
+    """Return the verb that a file declares, None if it declares none; report a fault of a package's code."""
+    faults, verb = list[Diagnostic](), None
+    with faults_reported(feature, f"reading the verb `{name}`", faults):
+        made = resolve(where)(data, report, name=name, languages=languages)
+        if made is not None and not (isinstance(made, VerbRow) and not [*wrong_fields(made)]):
+            raise TypeError(f"`{where}` returned {shown(made)}, which is no valid `VerbRow`")
+        verb = made
+    report.diagnostics += (replace(fault, place=report.document.place(())) for fault in faults)
+    return verb
 
 
 def _stories(found: ProjectDraft) -> dict[str, Story]:

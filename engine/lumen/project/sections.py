@@ -1,5 +1,6 @@
 """The sections of lumen.yaml that features add: their settings, and their part of the schema."""
 
+import pickle
 from collections.abc import Callable, Mapping
 from dataclasses import MISSING, fields, is_dataclass, replace
 from enum import Enum
@@ -8,9 +9,9 @@ from types import UnionType
 from typing import Any, TypeVar, get_args, get_origin
 
 from lumen.expressions.json_schema import is_usable_alone
-from lumen.feature import Section, resolve, rows, table
+from lumen.feature import Section, distribution_of, resolve, rows, table
 from lumen.language.diagnostics import Diagnostic
-from lumen.project.broken_features import faults_reported
+from lumen.project.broken_features import faults_reported, is_finding, shown
 from lumen.project.document_report import DocumentReport
 
 T = TypeVar("T")
@@ -79,7 +80,7 @@ def read_sections(data: Mapping[str, Any], report: DocumentReport) -> dict[str, 
             continue
         faults: list[Diagnostic] = []
         with faults_reported(feature, f"reading `{key}`", faults):
-            settings = _read(row, data, report)
+            settings = (_read_installed if distribution_of(feature) else _read)(row, data, report)
             if settings != type(settings)():
                 found[key] = settings
         place = report.document.place(tuple(key.split(".")), key=True)
@@ -123,6 +124,21 @@ def _read(row: Section, data: Mapping[str, Any], report: DocumentReport) -> obje
         raise TypeError(f"`{row.read}` returns no dataclass")
     if row.entries and not isinstance(getattr(settings, row.entries), Mapping):
         raise TypeError(f"`{row.entries}` of its settings is no mapping")
+    return settings
+
+
+def _read_installed(row: Section, data: Mapping[str, Any], report: DocumentReport) -> object:
+    """Return the settings of a package's section, as `_read` does, and keep its findings.
+
+    Raises TypeError if it adds anything but findings to the report, and any error of `pickle` if the settings can't be
+    sent by the process that reads the files.
+    """
+    own = report.copy()
+    settings = _read(row, data, own)
+    if not isinstance(own.diagnostics, list) or not all(map(is_finding, own.diagnostics)):
+        raise TypeError(f"`{row.read}` reported {shown(own.diagnostics)}, which are no findings")
+    pickle.dumps(settings)
+    report.take(own)
     return settings
 
 

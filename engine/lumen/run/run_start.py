@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 from lumen.errors import BusError, LumenError, ModuleError, ProjectError, RobotError, UsageError
@@ -133,6 +134,7 @@ def started(
         for name in names:
             directories[name] = RunDirectory(root, name, guest=guest)
             stack.callback(directories[name].close, forget=False)
+        once = cache(tell)  # the files of several robots can have the same fault
         failures = Failures(root, directories, parts or WHOLE, tell, wanted=alerted)
         stack.callback(failures.close)
         try:
@@ -140,7 +142,7 @@ def started(
                 with faults_told(feature, f"its `{where}`", tell, LumenError):
                     resolve(where)(root)
             projects = {
-                name: startup_project(root, directory, last_good=last_good, warn=tell)
+                name: startup_project(root, directory, last_good=last_good, warn=once)
                 for name, directory in directories.items()
             }
             yield BegunRun(root, directories, projects, failures)

@@ -4,10 +4,12 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from lumen.errors import FatalFilesError, ProjectError
-from lumen.language.diagnostics import Diagnostic
+from lumen.language.diagnostics import Diagnostic, Place
 from lumen.language.projects import Project
+from lumen.project.broken_features import BROKEN_FEATURE
 from lumen.project.crash_counter import MAX_CRASHES
 from lumen.project.files import fingerprint, read_files
+from lumen.project.project_folders import MAIN_FILE
 from lumen.run.recovery.run_directory import RunDirectory
 from lumen.run.reload.report import START, ReloadReport
 from lumen.run.reload.rollback_guard import PERIOD
@@ -43,6 +45,9 @@ def startup_project(
             why = f"the exhibition ended {died} times within {PERIOD:.0f} s of its start with these files"
             warn(_instead_of_yours(why.upper(), "Save them again or run `lumen reload` to try them again.\n"))
             return _instead(run_directory, good, project.hash, why)
+    for finding in diagnostics:
+        if finding.code == BROKEN_FEATURE and finding.place != Place(MAIN_FILE):  # else the command has printed it
+            warn(str(finding))
     run_directory.begin(project, files)
     return project
 
