@@ -188,13 +188,13 @@ SOUND = {"configure": "pass", "check": "pass", "wishes": "return {}", "more": "r
             {"configure": "parser.add_argument('--voice')"},
             "ArgumentError: argument --voice: conflicting option string: --voice",
         ),
-        ("run", {"wishes": "pass"}, "TypeError: `wishes` returned None instead of options by name"),
-        ("run", {"wishes": "return {3: 4}"}, "TypeError: `wishes` returned {3: 4} instead of options by name"),
+        ("run", {"wishes": "pass"}, "TypeError: it returned None instead of a mapping of str"),
+        ("run", {"wishes": "return {3: 4}"}, "TypeError: it returned {3: 4} instead of a mapping of str"),
         ("lint", None, "ModuleNotFoundError: No module named 'nosuch'"),
         ("lint", {"configure": "1 / 0"}, "ZeroDivisionError: division by zero"),
         ("lint", {"check": "1 / 0"}, "ZeroDivisionError: division by zero"),
-        ("lint", {"more": "pass"}, "TypeError: `more` returned None instead of a list of `Findings`"),
-        ("lint", {"more": "return [3]"}, "TypeError: `more` returned [3] instead of a list of `Findings`"),
+        ("lint", {"more": "pass"}, "TypeError: it returned None instead of a list of Findings"),
+        ("lint", {"more": "return [3]"}, "TypeError: it returned [3] instead of a list of Findings"),
     ],
 )
 def test_faulty_options_are_left_out_of_a_command(

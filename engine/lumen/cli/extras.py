@@ -2,20 +2,19 @@
 
 import argparse
 from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, Protocol, TypeVar
+from functools import cache
+from typing import TYPE_CHECKING, Any, Protocol
 
 from lumen.cli.streams import complain
 from lumen.errors import LumenError
-from lumen.feature import distribution_of, resolve, rows
-from lumen.project.broken_features import faults_told
+from lumen.feature import Feature, distribution_of, resolve, rows
+from lumen.project.broken_features import faults_reported, shown
 
 if TYPE_CHECKING:  # not at run time: `lumen lint` of unchanged files loads none of them
     from lumen.language.projects import Project
     from lumen.language.stories import Story
     from lumen.run.linting.findings import Findings
     from lumen.run.linting.targets import Wanted
-
-T = TypeVar("T")
 
 
 class RunExtra(Protocol):
@@ -56,31 +55,30 @@ class LintExtra(Protocol):
         ...
 
 
-def configure_extras(parser: argparse.ArgumentParser, kind: str, *, installed: bool) -> None:
-    """Add the options of the rows of a kind to a parser: those of installed packages, or those that come with Lumen.
+@cache
+def _used(kind: str) -> list[tuple[Feature, str]]:
+    """Return the rows of a kind. A row is removed after the first fault of its package."""
+    return [*rows(kind)]
 
-    Those of packages come last, so that no option of Lumen meets one of the same name. A package's options with a fault
-    are left out, and the fault is printed.
+
+def of_extras(kind: str, call: Callable[[Any], Any], *, installed: bool | None = None) -> list[Any]:
+    """Return the result of `call` for each class of options in the rows of a kind, in the order of the features.
+
+    `installed` chooses those of installed packages, or those that come with Lumen. LumenErrors are raised. After any
+    other error of a package, its options are left out until the command ends, and the fault is printed.
     """
-    extras = parser.get_default("extras") or []
-    parser.set_defaults(extras=extras)
-    for feature, where in rows(kind):
-        if installed == bool(distribution_of(feature)):
-            with faults_told(feature, f"its options `{where}`", complain):
-                extra = resolve(where)()
-                extra.configure(parser)
-                extras.append((feature, where, extra))
-
-
-def of_extras(options: argparse.Namespace, call: Callable[[Any], T]) -> list[T]:
-    """Return the result of `call` for each class of options that features added, in the order of the features.
-
-    LumenErrors are raised. After any other error of a package, its options are left out, and the fault is printed.
-    """
-    extras, options.extras = options.extras, []
-    found: list[T] = []
-    for feature, where, extra in extras:
-        with faults_told(feature, f"its options `{where}`", complain, LumenError):
-            found.append(call(extra))
-            options.extras.append((feature, where, extra))
+    found: list[Any] = []
+    for feature, where in [*_used(kind)]:
+        if installed in (None, bool(distribution_of(feature))):
+            with faults_reported(feature, f"its options `{where}`", lambda fault: complain(str(fault)), LumenError):
+                found.append(call(resolve(where)()))
+                continue
+            _used(kind).remove((feature, where))
     return found
+
+
+def returned(value: Any, form: Any, kind: type) -> Any:
+    """Return a value that a package returned. Raises TypeError if it is no `form`, such as a list, of that kind."""
+    if not isinstance(value, form) or not all(isinstance(each, kind) for each in value):
+        raise TypeError(f"it returned {shown(value)} instead of a {form.__name__.lower()} of {kind.__name__}")
+    return value

@@ -23,9 +23,8 @@ class Help(argparse.HelpFormatter):
         """Return an option's help; a `%` that names no value of argparse, such as `100% sure`, stays as it is."""
         text = self._get_help_string(action) or ""
         with suppress(KeyError, TypeError, ValueError):
-            if "%(" in text:
-                return super()._expand_help(action)
-        return text.replace("%%", "%")
+            return super()._expand_help(action) if "%(" in text else text.replace("%%", "%")
+        return text
 
 
 def _columns() -> int:

@@ -3,14 +3,13 @@
 import argparse
 from collections.abc import Mapping, Sequence
 
-from lumen.cli.extras import LintExtra, configure_extras, of_extras
+from lumen.cli.extras import LintExtra, of_extras, returned
 from lumen.cli.model_option import configure_model, use_model
 from lumen.cli.printing import show, verdict
 from lumen.cli.render import finding_formats, render
 from lumen.cli.terminal import coloured
 from lumen.errors import UsageError
 from lumen.language.diagnostics import Diagnostic
-from lumen.project.broken_features import shown
 from lumen.run.linting.findings import Findings
 from lumen.run.linting.targets import FindingsOf, LintTarget, Wanted, lint, lint_targets
 from lumen.upkeep.garbage import gc_paused
@@ -28,7 +27,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         metavar="OLD",
         help="also report what a reload from OLD would refuse: a folder, a revision, or `live`",
     )
-    configure_extras(parser, "lint_options", installed=False)
+    of_extras("lint_options", lambda extra: extra.configure(parser), installed=False)
     add("--strict", action="store_true", help="count warnings as errors")
     add("--fix", action="store_true", help="make every repair that needs no decision")
     add("--diff", action="store_true", help="show what --fix would change, and change nothing")
@@ -37,7 +36,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("--whole", action="store_true", help="check the whole project of each named file")
     configure_model(parser)
     add("--stdin-filename", metavar="FILE", help="with `-`: the file whose new content is read from standard input")
-    configure_extras(parser, "lint_options", installed=True)
+    of_extras("lint_options", lambda extra: extra.configure(parser), installed=True)
 
 
 def run(options: argparse.Namespace) -> int:
@@ -55,22 +54,14 @@ def run(options: argparse.Namespace) -> int:
         return _diff(projects, wanted)
     if options.fix:
         _fix(projects, wanted)
-    found = _with_more([judge(what) for what in projects], wanted, options)
-    show(render(options.format, found, coloured=options.format in ("text", "concise") and coloured()))
-    return verdict(found, strict=options.strict)
-
-
-def _with_more(found: list[Findings], wanted: Wanted, options: argparse.Namespace) -> list[Findings]:
-    """Return the findings with those that the options of features add."""
+    found = [judge(what) for what in projects]
 
     def add(extra: LintExtra) -> None:
-        more = extra.more(found, wanted, options)
-        if not isinstance(more, list) or not all(isinstance(each, Findings) for each in more):
-            raise TypeError(f"`more` returned {shown(more)} instead of a list of `Findings`")
-        found[:] = more
+        found[:] = returned(extra.more(found, wanted, options), list, Findings)
 
-    of_extras(options, add)
-    return found
+    of_extras("lint_options", add)
+    show(render(options.format, found, coloured=options.format in ("text", "concise") and coloured()))
+    return verdict(found, strict=options.strict)
 
 
 def _judge(against: str | None, wanted: Wanted, *, kept: bool) -> FindingsOf:
@@ -111,7 +102,7 @@ def _consistent(options: argparse.Namespace) -> None:
         raise UsageError("--fix changes the files, but --diff only shows the changes: choose one")
     if options.diff and options.against is not None:
         raise UsageError("--diff shows only what --fix would change: leave out --against")
-    of_extras(options, lambda extra: extra.check(options))
+    of_extras("lint_options", lambda extra: extra.check(options))
     if options.watch and (options.fix or options.diff or "-" in options.paths):
         raise UsageError("--watch can't be combined with --fix, --diff or `-`")
     if options.watch and options.format not in ("text", "concise"):

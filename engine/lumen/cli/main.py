@@ -92,23 +92,18 @@ def main(argv: Sequence[str] | None = None) -> int:
     It is 0 if all is well, 1 for findings or a failed story, 2 if the command could not run, 130 after Ctrl-C. Unknown
     options and `--help` raise SystemExit.
     """
-    try:
-        return _main(argv)
-    except KeyboardInterrupt:  # during the import of a package's manifest, for example
-        return 130
-
-
-def _main(argv: Sequence[str] | None) -> int:
     open_streams()
     arguments = sys.argv[1:] if argv is None else list(argv)
-    if not arguments:
-        command_line(()).print_help()
-        return 2
     verb = next((word for word in arguments if not word.startswith("-")), "")
     try:
         parser = command_line((verb,))
     except LumenError as error:
         complain(f"lumen {verb}: {error}")
+        return 2
+    except KeyboardInterrupt:  # during the import of a package's manifest, for example
+        return 130
+    if not arguments:
+        parser.print_help()
         return 2
     options = parse(parser, arguments)
     code = _run(options)

@@ -7,7 +7,7 @@ from contextlib import ExitStack, contextmanager, nullcontext, suppress
 from pathlib import Path
 
 from lumen.bus.addresses import examples, within_process
-from lumen.cli.extras import configure_extras, of_extras
+from lumen.cli.extras import of_extras
 from lumen.cli.formats import configure_format, one_object
 from lumen.cli.main import ready
 from lumen.cli.model_option import configure_model, use_model
@@ -83,7 +83,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("--bus", metavar="URL", help=f"{examples()} (default: LUMEN_BUS, then lumen.yaml)")
     add("--for", dest="period", metavar="60s", help="end after this much simulated time")
     add("--language", metavar="LANG", help="the language that the robot speaks first")
-    configure_extras(parser, "run_options", installed=False)
+    of_extras("run_options", lambda extra: extra.configure(parser), installed=False)
     add("--record", metavar="FILE.mcap", type=Path, help="record the messages on the bus, for Foxglove and Lichtblick")
     add(
         "--voice",
@@ -94,7 +94,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("--sound", metavar="FILE.wav", type=Path, help="with --voice: write the speech to a file instead of playing it")
     _configure_files(parser)
     configure_format(parser)
-    configure_extras(parser, "run_options", installed=True)
+    of_extras("run_options", lambda extra: extra.configure(parser), installed=True)
 
 
 def _configure_files(parser: argparse.ArgumentParser) -> None:
@@ -139,7 +139,7 @@ def run(options: argparse.Namespace) -> int:
         )
     options.robot = robot_kind(options.robot, root)
     parts, robots = _parts(options, root), robots_of(root, options.robot_name)
-    of_extras(options, lambda extra: extra.check(options, parts, len(robots)))
+    of_extras("run_options", lambda extra: extra.check(options, parts, len(robots)))
     if len(robots) > 1:
         from lumen.cli.house_run import check_house  # only a run of several robots needs it
 

@@ -4,12 +4,11 @@ import argparse
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from lumen.cli.extras import RunExtra, of_extras
+from lumen.cli.extras import of_extras, returned
 from lumen.errors import UsageError
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.projects import Project
 from lumen.language.stories import Story
-from lumen.project.broken_features import shown
 from lumen.project.units import seconds
 from lumen.run.chosen_stories import stories_of
 from lumen.run.presence import ROBOT_PART
@@ -83,11 +82,5 @@ def wishes(options: argparse.Namespace, project: Project, story: Story | None, p
 
     Raises UsageError if they can't be fulfilled.
     """
-
-    def wished(extra: RunExtra) -> Mapping[str, Any]:
-        found = extra.wishes(options, project, story, period)
-        if isinstance(found, Mapping) and all(isinstance(name, str) for name in found):
-            return found
-        raise TypeError(f"`wishes` returned {shown(found)} instead of options by name")
-
-    return {name: value for found in of_extras(options, wished) for name, value in found.items()}
+    wished = lambda extra: returned(extra.wishes(options, project, story, period), Mapping, str)  # noqa: E731
+    return {name: value for found in of_extras("run_options", wished) for name, value in found.items()}

@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Callable, Mapping
-from functools import cache, partial
+from functools import cache
 from typing import Any, NamedTuple
 
 from lumen.errors import LumenError
@@ -82,14 +82,11 @@ def _package(name: str) -> str:
 
 def _function(name: str, row: FunctionRow) -> Function:
     parameters = tuple(map(_kinds, row.parameters))
-    call = _checked(name, row, parameters)
-    if row.exact:  # that of a package may fail at its import, which only its callers notice
-        call = partial(_unchecked, name, row) if _package(name) else resolve(row.call)
+    if not row.exact:
+        call = _checked(name, row, parameters)
+    else:  # one of a package is imported when it is called, because its import may fail
+        call = (lambda *given: _called(name, row, given)) if _package(name) else resolve(row.call)
     return Function(parameters, _kinds(row.returns), call, row.scoped)
-
-
-def _unchecked(name: str, row: FunctionRow, *arguments: Any) -> Any:
-    return _called(name, row, arguments)
 
 
 def _kinds(kinds: str) -> KindSet:

@@ -77,7 +77,7 @@ def _section_rules(found: ProjectDraft) -> Iterator[tuple[Feature, str]]:
 def _apply(feature: Feature, rule: str, found: ProjectDraft) -> None:
     """Run a rule; a fault of a rule that another installed package provides becomes a finding."""
     returned: object = None
-    with faults_reported(feature, f"its rule `{rule}`", found.loose):
+    with faults_reported(feature, f"its rule `{rule}`", found.loose.append):
         returned = resolve(rule)(found)
     if distribution := distribution_of(feature):
         faults = [f"reported {shown(each)}, which is no finding" for each in _remove_unsound(found)]

@@ -13,7 +13,7 @@ def check(draft: ProjectDraft) -> None:
     draft.loose += broken_features()
     for feature, where in _imported():
         if distribution_of(feature):
-            with faults_reported(feature, f"its module `{where}`", draft.loose):
+            with faults_reported(feature, f"its module `{where}`", draft.loose.append):
                 resolve(where)
     if found().installed:
         draft.loose += (broken(*fault) for fault in repeated_codes())

@@ -79,9 +79,9 @@ def blaming(feature: Feature, where: str, *passed: type[Exception]) -> Iterator[
 
 @contextmanager
 def faults_reported(
-    feature: Feature, what: str, findings: list[Diagnostic], *passed: type[Exception]
+    feature: Feature, what: str, report: Callable[[Diagnostic], object], *passed: type[Exception]
 ) -> Iterator[None]:
-    """Run code of a feature; add a finding that names the distribution for any fault of that code.
+    """Run code of a feature; report a finding that names the distribution for any fault of that code.
 
     Errors of Lumen's own features and of the types in `passed` are raised unchanged, and so is KeyboardInterrupt.
     `what` names the code, such as "its rule `NAME`".
@@ -95,17 +95,7 @@ def faults_reported(
     except BaseException as error:  # even SystemExit
         if (distribution := distribution_of(feature)) is None:
             raise
-        findings.append(broken(distribution, f"{what} raised {described(error)}"))
-
-
-@contextmanager
-def faults_told(feature: Feature, what: str, tell: Callable[[str], None], *passed: type[Exception]) -> Iterator[None]:
-    """Run code of a feature as `faults_reported` does; call `tell` with a line about a fault instead of adding it."""
-    faults: list[Diagnostic] = []
-    with faults_reported(feature, what, faults, *passed):
-        yield
-    for fault in faults:
-        tell(str(fault))
+        report(broken(distribution, f"{what} raised {described(error)}"))
 
 
 @contextmanager

@@ -25,7 +25,7 @@ from lumen.language.verbs import is_built_in
 from lumen.project.added_verbs import NO_VERBS, OwnVerbs
 from lumen.project.behaviors import build_machine
 from lumen.project.bodies import build_body, build_likes
-from lumen.project.broken_features import BROKEN_FEATURE, faults_reported, resolved, shown
+from lumen.project.broken_features import BROKEN_FEATURE, faults_reported, shown
 from lumen.project.built_file import Build, BuiltFile, read_file
 from lumen.project.chosen_model import chosen
 from lumen.project.chosen_robot import chosen_robot
@@ -155,7 +155,7 @@ def _beside(found: ProjectDraft) -> None:
     """Build the files in the project's root folder that features have rows for."""
     for feature, (name, row) in rows("files"):
         if (content := found.files.get(name)) is not None:
-            with faults_reported(feature, f"reading `{name}`", found.loose):
+            with faults_reported(feature, f"reading `{name}`", found.loose.append):
                 if row.schema:
                     added_schema(row.schema)
                 file = _read(found, name, content, kind_of(name), resolve(row.build))
@@ -285,14 +285,16 @@ def _verb(
     feature: Feature, where: str, data: Any, report: DocumentReport, *, name: str, languages: Sequence[str]
 ) -> VerbRow | None:
     """Return the verb that a file declares, None if it declares none; report a fault of a package's code."""
-    faults, verb = list[Diagnostic](), None
-    with faults_reported(feature, f"reading the verb `{name}`", faults):
+
+    def report_here(fault: Diagnostic) -> None:
+        report.diagnostics.append(replace(fault, place=report.document.place(())))
+
+    with faults_reported(feature, f"reading the verb `{name}`", report_here):
         made = resolve(where)(data, report, name=name, languages=languages)
-        if made is not None and not (isinstance(made, VerbRow) and not [*wrong_fields(made)]):
-            raise TypeError(f"`{where}` returned {shown(made)}, which is no valid `VerbRow`")
-        verb = made
-    report.diagnostics += (replace(fault, place=report.document.place(())) for fault in faults)
-    return verb
+        if made is None or (isinstance(made, VerbRow) and not [*wrong_fields(made)]):
+            return made
+        raise TypeError(f"`{where}` returned {shown(made)}, which is no valid `VerbRow`")
+    return None
 
 
 def _stories(found: ProjectDraft) -> dict[str, Story]:

@@ -79,7 +79,7 @@ def read_sections(data: Mapping[str, Any], report: DocumentReport) -> dict[str, 
         if not has_section(data, key):
             continue
         faults: list[Diagnostic] = []
-        with faults_reported(feature, f"reading `{key}`", faults):
+        with faults_reported(feature, f"reading `{key}`", faults.append):
             settings = (_read_installed if distribution_of(feature) else _read)(row, data, report)
             if settings != type(settings)():
                 found[key] = settings
@@ -105,7 +105,7 @@ def with_sections(schema: dict[str, Any]) -> dict[str, Any]:
             for step in above:
                 siblings = siblings.setdefault(step, {"type": "object"}).setdefault("properties", {})
             own: Mapping[str, Any] = {}
-            with faults_reported(feature, f"the schema of `{key}`", []):
+            with faults_reported(feature, f"the schema of `{key}`", lambda _: None):
                 own = added_schema(row.schema)
             siblings.setdefault(name, own)
     return schema

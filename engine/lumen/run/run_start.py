@@ -10,7 +10,7 @@ from lumen.errors import BusError, LumenError, ModuleError, ProjectError, RobotE
 from lumen.feature import Feature, described, resolve, rows
 from lumen.language.diagnostics import Severity
 from lumen.language.projects import Project
-from lumen.project.broken_features import called, faults_told, package_at_fault
+from lumen.project.broken_features import called, faults_reported, package_at_fault
 from lumen.project.main_file import main_settings
 from lumen.project.settings import Settings
 from lumen.run.presence import BRAIN, ROBOT_PART
@@ -83,7 +83,7 @@ class Failures:
     def close(self) -> None:
         """Wait until all reports are sent."""
         for feature, where, wait in self._waiting:
-            with faults_told(feature, f"its `{where}`", self._tell):
+            with faults_reported(feature, f"its `{where}`", lambda fault: self._tell(str(fault))):
                 wait()
 
     def _failure(self, error: Exception, robots: Sequence[str]) -> RunFailure:
@@ -139,7 +139,7 @@ def started(
         stack.callback(failures.close)
         try:
             for feature, where in rows("before_start"):
-                with faults_told(feature, f"its `{where}`", tell, LumenError):
+                with faults_reported(feature, f"its `{where}`", lambda fault: tell(str(fault)), LumenError):
                     resolve(where)(root)
             projects = {
                 name: startup_project(root, directory, last_good=last_good, warn=once)

@@ -81,7 +81,7 @@ class AddedVoice:
         if self._silent:
             return otherwise
         faults: list[Diagnostic] = []
-        with faults_reported(self._feature, f"its voice `{self._name}`", faults):
+        with faults_reported(self._feature, f"its voice `{self._name}`", faults.append):
             return call()
         self._silent = True
         _log.error("%s; the robot is silent from now on", faults[0].message)

@@ -111,7 +111,7 @@ class ModulePart(Part):
     def _done(self, call: Callable[[], None]) -> bool:
         """Call a method of a module; report a fault of another package's code, and return False if there was one."""
         faults: list[Diagnostic] = []
-        with faults_reported(owner("modules", self.name), f"its module `{self.name}`", faults):
+        with faults_reported(owner("modules", self.name), f"its module `{self.name}`", faults.append):
             call()
         for fault in faults:
             self._tell(self.name, f"{fault.message} ({fault.hint})")
