@@ -15,7 +15,7 @@ from typing import NamedTuple
 GROUP = "lumen.features"
 _METADATA = (".dist-info", ".egg-info")
 _SECTION = rf"(?m)^\[\s*{re.escape(GROUP)}\s*\]$([^\[]*)"
-_ENTRY_POINT = r"(?m)^\s*[^#;=\s][^=]*=\s*(?P<manifest>[\w.]+(?:\s*:\s*[\w.]+)?)"
+_ENTRY_POINT = r"(?m)^\s*[^#;=\s][^=]*=\s*(?P<manifest>[^\s\[][^\n\[]*)"
 _CODE = r"(?m)^\"?([^\W\d]\w*)(?:/[^,]*)?\.py\"?(?:,|$)"
 
 

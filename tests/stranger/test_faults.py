@@ -46,6 +46,7 @@ BUS = "from lumen.bus.memory import MemoryBus\n\n\nclass make(MemoryBus):\n    d
 SILENT = BUS.replace("def send(self, message): 1 / 0", "def __init__(self, address, sender): super().__init__()")
 CLOCK_ROW = "robots={'bot': RobotRow('faulty_code:make')}"
 CLOCK = QUIET.replace("Robot())", "Robot(), Clock())") + "\n\nclass Clock:\n"
+ODD = "from lumen.language.diagnostics import *\nODD = Code('odd', 'names', WARNING, 'is odd')\n"
 RUN = "run --robot recording --speed max --story visitor"
 FAULTS = {
     "robot without a method": (
@@ -229,15 +230,15 @@ FAULTS = {
         "`faulty_code:render` returned None instead of a text",
     ),
     "pages that leave": (
-        "pages=('faulty_code',)",
-        "raise SystemExit",
-        "explain cut-short",
-        "its module `faulty_code` raised SystemExit: ",
+        "codes=('faulty_code',), pages=('faulty_code:pages',)",
+        f"{ODD}def __getattr__(name): raise SystemExit",
+        "explain odd",
+        "its module `faulty_code:pages` raised SystemExit: ",
     ),
     "pages of no package": (
-        "pages=('faulty_code:pages',)",
-        "pages = 7",
-        "explain cut-short",
+        "codes=('faulty_code',), pages=('faulty_code:pages',)",
+        f"{ODD}pages = 7",
+        "explain odd",
         "its module `faulty_code:pages` raised ",
     ),
     "subcommand that leaves": (

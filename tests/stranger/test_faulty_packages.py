@@ -3,16 +3,22 @@
 from pathlib import Path
 
 import pytest
+from written_distribution import on_path, write_distribution
 
 import lumen
-from lumen.cli.main import main
+from lumen.cli.main import command_line, main
 from lumen.errors import ExpressionError
 from lumen.expressions import Scope, compile_expression
 from lumen.feature import VerbRow, features
+from lumen.feature.checking import TAKEN
 from lumen.language.added_verbs import arguments_of, durations_of, short_argument
 from lumen.lint import check_files
 from lumen.project.broken_features import shown
 from lumen.project.files import read_files
+from lumen.project.formats.importers import recognised
+from lumen.run.forgetting.added import Forgetting
+from lumen.run.forgetting.files import forget_in
+from lumen.run.setup import robot_options
 from tests import ROOT
 from tests.copying import copied_project
 from tests.stranger.installing import Installed
@@ -321,3 +327,54 @@ def test_lint_reports_a_faulty_reader_of_verbs_at_the_file(
     (finding,) = [each for each in check_files(hall, read_files(hall))[1] if each.code == "broken-feature"]
     assert finding.place.file == "motions/wave.yaml"
     assert finding.message.startswith(f"{FAULT}reading the verb `wave` raised {fault}")
+
+
+def test_a_fault_of_one_package_leaves_the_rows_of_others(
+    installed: Installed, hall: Path, capsys: pytest.CaptureFixture[str], caplog: pytest.LogCaptureFixture
+) -> None:
+    row = "pages=('nosuch',), importers={'.odd': Importer('behavior', 'nosuch:read', begins='nosuch:begins')}"
+    installed.write("faulty", MANIFEST.format(row=row))
+    assert main(["explain", "cut-short"]) == 0
+    (hall / "chart.odder").write_text("odd")
+    assert recognised(b"odd") is None
+    assert f"{FAULT}its `nosuch:begins` raised ModuleNotFoundError" in caplog.text
+
+
+def test_a_forgetter_that_fails_is_listed_and_the_others_forget(installed: Installed, tmp_path: Path) -> None:
+    code = "def forget(folder, name, found): found.visitors += 1\n"
+    row = "file_forgetters=('nosuch:forget', 'faulty_code:leave', 'faulty_code:forget')"
+    installed.write("faulty", MANIFEST.format(row=row), faulty_code=f"{code}def leave(*given): exit()\n")
+    found = Forgetting()
+    forget_in(tmp_path, "Ani", found)
+    assert found.visitors == 1
+    assert [place.where for place in found.left] == ["a package"] * 2
+    assert all(place.what.startswith(FAULT) for place in found.left)
+
+
+@for_each("option", ["RobotOption('speed', 'X', 'h', short=True)", "RobotOption('verb', 'X', 'h', short=True)"])
+def test_a_robot_cannot_have_an_option_of_lumen(option: str, installed: Installed, hall: Path) -> None:
+    installed.write("faulty", MANIFEST.format(row=f"robots={{'bot': RobotRow(options=({option},))}}"))
+    (finding,) = check_files(hall, read_files(hall))[1]
+    name = option.split("'")[1]
+    assert finding.message.endswith(f"no robot can have an option `--{name}`: choose another word")
+
+
+def test_the_taken_names_are_those_of_lumens_options_of_run() -> None:
+    actions = command_line(("run",)).verbs["run"]._actions
+    flags = {word.removeprefix("--").replace("-", "_") for each in actions for word in each.option_strings}
+    own = {option.destination for option in robot_options()}
+    assert {*flags, *(each.dest for each in actions), "run", "verb"} - own - {"_h"} == TAKEN
+
+
+def test_an_api_that_is_no_number_is_shown_as_it_is_written(installed: Installed, hall: Path) -> None:
+    installed.write("faulty", MANIFEST.format(row="api='1'"))
+    (finding,) = check_files(hall, read_files(hall))[1]
+    assert finding.message == f"{FAULT}its manifest is written for API '1', and this Lumen has API 1"
+
+
+@for_each("manifest", ['"faulty:FEATURE"', ":::", "faulty FEATURE"])
+def test_an_entry_point_that_names_nothing_is_a_finding(manifest: str, tmp_path: Path, hall: Path) -> None:
+    write_distribution(tmp_path, "faulty", manifest, {"faulty.py": MANIFEST.format(row="")})
+    with on_path(tmp_path):
+        (finding,) = check_files(hall, read_files(hall))[1]
+    assert finding.message.startswith(f"{FAULT}its manifest `")

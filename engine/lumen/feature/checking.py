@@ -18,6 +18,35 @@ from lumen.feature.manifest import (
     Section,
 )
 
+TAKEN = frozenset(
+    (
+        "bus",
+        "for",
+        "format",
+        "fresh",
+        "help",
+        "language",
+        "last_good",
+        "model",
+        "only",
+        "period",
+        "project",
+        "record",
+        "reload",
+        "robot",
+        "robot_name",
+        "run",
+        "size",
+        "sound",
+        "speed",
+        "story",
+        "verb",
+        "video",
+        "voice",
+    )
+)
+"""The names of Lumen's own options of `lumen run`, and of their values: no robot can have such an option."""
+
 
 def wrong_rows(feature: Feature) -> Iterator[str]:
     """Yield the faults of a manifest, at most one for each kind of row: a wrong type, or a row that can't be used."""
@@ -60,8 +89,8 @@ def _fault(row: Any) -> str:
     """Return the fault of a row whose type is right; empty if it has none."""
     match row:
         case RobotRow(options=options):
-            wrong = [each.name for each in options if each.name == "name" or not each.name.isidentifier()]
-            return f"no robot can have an option `--robot-{wrong[0]}`: choose another word" if wrong else ""
+            wrong = [each.flag for each in options if each.destination in TAKEN or not each.name.isidentifier()]
+            return f"no robot can have an option `{wrong[0]}`: choose another word" if wrong else ""
         case FunctionRow(parameters=parameters, returns=returns):
             wrong = [kind for kind in "|".join((*parameters, returns)).split("|") if kind not in VALUE_KINDS]
             return f"there is no kind of value `{wrong[0]}`: there are {', '.join(VALUE_KINDS)}" if wrong else ""

@@ -137,7 +137,7 @@ def _manifest(distribution: Distribution) -> tuple[Feature | None, str]:
         if not isinstance(feature, Feature):
             return None, f"its entry point names `{distribution.manifest}`, which is no `Feature`"
         if feature.api != API:
-            return None, f"its manifest is written for API {feature.api}, and this Lumen has API {API}"
+            return None, f"its manifest is written for API {feature.api!r}, and this Lumen has API {API}"
         return feature, next(wrong_rows(feature), "")
     except KeyboardInterrupt:
         raise

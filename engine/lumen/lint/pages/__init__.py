@@ -67,13 +67,13 @@ class Page(NamedTuple):
 def page(code: str) -> Page:
     """Return the page of one of `codes()`; for a code without a page, its summary.
 
-    Raises LumenError if the pages of another installed package can't be read.
+    Raises LumenError if pages of another installed package, which may have this one, can't be read.
     """
     text = ""
     for feature, package in rows("pages"):
         with blaming(feature, package):
-            file = files(resolve(package)) / f"{code}.md"
-            text = text or (file.read_text(encoding="utf-8") if file.is_file() else "")
+            if not text and (file := files(resolve(package)) / f"{code}.md").is_file():
+                text = file.read_text(encoding="utf-8")
     if not text:
         return Page(code, f"{codes()[code].summary.capitalize()}.", "", (), ())
     said, _, examples = text.partition("\nWrong:\n")

@@ -1,13 +1,15 @@
 """The importers of other tools' files, by the ending of the file name; they are rows of manifests."""
 
+import logging
 from collections.abc import Mapping
 from pathlib import Path, PurePath
 from typing import Any, Protocol
 
-from lumen.feature import Importer, distribution_of, owner, table
+from lumen.errors import LumenError
+from lumen.feature import Importer, distribution_of, owner, resolve, table
 from lumen.language.diagnostics import Diagnostic, Place
 from lumen.language.robots import Body
-from lumen.project.broken_features import called, faulty, resolved, shown
+from lumen.project.broken_features import faults_reported, faulty, resolved, shown
 from lumen.project.formats.conversion_findings import LOST, ConversionFindings, broken
 from lumen.project.formats.joint_curves import JointCurves, MotionFile
 from lumen.project.formats.known import FormatTable
@@ -39,8 +41,9 @@ def recognised(content: bytes) -> tuple[Importer, Any] | None:
     """Return the row and the function of the importer that recognises a file by its content; None if none does."""
     for ending, row in table("importers").items():
         feature = owner("importers", ending)
-        if row.begins and called(feature, row.begins, content):
-            return row, resolved(feature, row.read)
+        with faults_reported(feature, f"its `{row.begins}`", lambda fault: logging.warning("%s", fault), LumenError):
+            if row.begins and resolve(row.begins)(content):
+                return row, resolved(feature, row.read)
     return None
 
 

@@ -6,14 +6,14 @@ from collections.abc import Callable, Iterator
 from contextlib import suppress
 from pathlib import Path
 
-from lumen.errors import JournalError, ModuleError
-from lumen.feature import rows
+from lumen.errors import JournalError, LumenError, ModuleError
+from lumen.feature import resolve, rows
 from lumen.journal.forgotten_snapshots import forgetful_data
 from lumen.journal.journal_file import JOURNAL_SUFFIX, read_journal
 from lumen.journal.journal_folder import JOURNAL_FOLDER, newest
 from lumen.journal.redaction import names, redact
 from lumen.language.people import PersonName, name_key
-from lumen.project.broken_features import called
+from lumen.project.broken_features import faults_reported
 from lumen.project.files import MAX_PROJECT_BYTES
 from lumen.project.home import Home
 from lumen.project.json_lines import forget_lines, line_names
@@ -33,7 +33,13 @@ def forget_in(folder: Path, name: str, found: Forgetting) -> None:
     A running exhibition changes its own files; the function waits for that, for at most PATIENCE.
     """
     for feature, where in rows("file_forgetters"):
-        called(feature, where, folder, name, found)
+        with faults_reported(
+            feature,
+            f"its `{where}`",
+            lambda fault: found.left.append(ForgottenPlace("a package", fault.message)),
+            LumenError,
+        ):
+            resolve(where)(folder, name, found)
     person = PersonName(name, map(name_key, found.others))
     _drafts(folder)
     found.left += _left(folder, person)
