@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 
+from lumen.features.console import commands
 from lumen.robot.bounded_robot import BoundedRobot
 from lumen.run.exhibition import Exhibition
 from lumen.run.making.modules import ModulesPlan
@@ -21,7 +22,7 @@ from tests.features.console.viewer import Viewer
 from tests.rabbitmq import RabbitMQ
 from tests.seams.test_joints import Obedient
 from tests.tour.conftest import copied, copy, project
-from tests.waiting import until
+from tests.waiting import HANG, until
 
 __all__ = ["copy", "project"]
 
@@ -107,6 +108,12 @@ class Shared:
         if self._hosted:
             self._hosted.close()
         self._served = self._hosted = None
+
+
+@pytest.fixture(autouse=True)
+def patient(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A command counts as unsent later than beside a robot: a busy machine may take it late."""
+    monkeypatch.setattr(commands, "SENT_TIMEOUT", HANG)
 
 
 @pytest.fixture(scope="module")

@@ -7,11 +7,14 @@ from pathlib import Path
 
 import pytest
 
+from lumen.features.console import commands
 from tests.features.console.conftest import Hosted
 from tests.features.console.pages import Served, Stream
 from tests.guarded import DEVNULL, PIPE, Guarded
 from tests.rabbitmq import RabbitMQ
 from tests.waiting import until
+
+SENT_TIMEOUT = commands.SENT_TIMEOUT
 
 
 def whole(positions: list[str]) -> bool:
@@ -20,7 +23,7 @@ def whole(positions: list[str]) -> bool:
     return numbers == list(range(numbers[0], numbers[0] + len(numbers)))
 
 
-def test_an_exhibition_that_is_begun_again_is_gone_on_with(copy: Path) -> None:
+def test_an_exhibition_that_is_begun_again_is_gone_on_with(copy: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     first = Hosted(copy)
     served = Served(copy)
     try:
@@ -28,7 +31,9 @@ def test_an_exhibition_that_is_begun_again_is_gone_on_with(copy: Path) -> None:
             until(lambda: stream.of("entry"))
             first.close()
             until(lambda: not served.browser.robots[0]["connected"])
-            assert served.browser.command("rest", robot="NAO").data["state"] == "unsent"
+            with monkeypatch.context() as patch:
+                patch.setattr(commands, "SENT_TIMEOUT", SENT_TIMEOUT)
+                assert served.browser.command("rest", robot="NAO").data["state"] == "unsent"
             before = len(stream.of("entry"))
             second = Hosted(copy)
             try:
@@ -61,7 +66,9 @@ def test_a_console_that_is_begun_again_goes_on_after_what_a_page_has(hosted: Hos
 
 
 @pytest.mark.slow
-def test_a_broker_that_is_away_is_said_and_gone_on_with(copy: Path, own_broker: RabbitMQ) -> None:
+def test_a_broker_that_is_away_is_said_and_gone_on_with(
+    copy: Path, own_broker: RabbitMQ, monkeypatch: pytest.MonkeyPatch
+) -> None:
     hosted = Hosted(copy, own_broker.url)
     served = Served(copy, bus=own_broker.url)
     browser = served.browser
@@ -73,9 +80,10 @@ def test_a_broker_that_is_away_is_said_and_gone_on_with(copy: Path, own_broker: 
             until(lambda: stream.of("entry"))
             own_broker.kill()
             until(lambda: not browser.robots[0]["connected"])
-            answer = browser.command("rest", robot=robot["robot"])
-            assert answer.data["state"] == "unsent"
-            assert browser.command("say", text="Hello").data["state"] == "unsent"
+            with monkeypatch.context() as patch:
+                patch.setattr(commands, "SENT_TIMEOUT", SENT_TIMEOUT)
+                assert browser.command("rest", robot=robot["robot"]).data["state"] == "unsent"
+                assert browser.command("say", text="Hello").data["state"] == "unsent"
             own_broker.start()
             until(lambda: browser.robots[0]["connected"])
             answer = browser.command("rest")
@@ -88,7 +96,10 @@ def test_a_broker_that_is_away_is_said_and_gone_on_with(copy: Path, own_broker: 
 
 
 @pytest.mark.slow
-def test_a_robot_whose_process_is_gone_is_not_said_to_rest(copy: Path, broker: RabbitMQ) -> None:
+def test_a_robot_whose_process_is_gone_is_not_said_to_rest(
+    copy: Path, broker: RabbitMQ, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(commands, "SENT_TIMEOUT", SENT_TIMEOUT)
     command = [sys.executable, "-m", "lumen", "run", copy, "--bus", broker.url, "--robot", "recording", "--only"]
     environment = {**os.environ, "PYTHONUNBUFFERED": "1"}
     with (

@@ -4,10 +4,13 @@ import base64
 import http.client
 import threading
 
+import pytest
+
+from lumen.features.console import camera
 from lumen.features.console.camera import jpeg_in
 from tests.features.console.conftest import Hosted
 from tests.features.console.pages import Browser, Served
-from tests.waiting import until
+from tests.waiting import HANG, until
 
 JPEG = b"\xff\xd8\xff\xe0picture\xff\xd9"
 KEY = "avatar.NAO.data.image"
@@ -24,7 +27,10 @@ def test_only_pictures_are_shown() -> None:
         assert jpeg_in(body) is None
 
 
-def test_images_come_while_somebody_looks(served: Served, hosted: Hosted, browser: Browser) -> None:
+def test_images_come_while_somebody_looks(
+    served: Served, hosted: Hosted, browser: Browser, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    fresh, linger = camera.FRESH, camera.LINGER
     cameras, bus = served.console.site.sights.cameras, hosted.exhibition.node.bus
     ending = threading.Event()
 
@@ -36,7 +42,7 @@ def test_images_come_while_somebody_looks(served: Served, hosted: Hosted, browse
     sender.start()
     try:
         assert not cameras.looked_at("NAO")
-        connection = http.client.HTTPConnection(browser.host, browser.port, timeout=30)
+        connection = http.client.HTTPConnection(browser.host, browser.port, timeout=HANG)
         connection.request("GET", "/camera/NAO")
         answer = connection.getresponse()
         assert answer.getheader("content-type", "").startswith("multipart/x-mixed-replace")
@@ -45,10 +51,15 @@ def test_images_come_while_somebody_looks(served: Served, hosted: Hosted, browse
         answer.close()
         connection.close()
         until(lambda: not cameras.looked_at("NAO"))
+        monkeypatch.setattr(camera, "FRESH", HANG)
+        monkeypatch.setattr(camera, "LINGER", HANG)
         until(lambda: browser.get("/camera/NAO?still").status == 200)
         still = browser.get("/camera/NAO?still")
         assert (still.headers["content-type"], still.body) == ("image/jpeg", JPEG)
         assert cameras.looked_at("NAO")
+        monkeypatch.setattr(camera, "FRESH", fresh)
+        monkeypatch.setattr(camera, "LINGER", linger)
+        browser.get("/camera/NAO?still")  # the last look ends after the usual time
         until(lambda: not cameras.looked_at("NAO"))
     finally:
         ending.set()

@@ -8,6 +8,7 @@ import pytest
 from selenium.webdriver import ActionChains
 from selenium.webdriver.common.keys import Keys
 
+from lumen.run import forking
 from tests.features.console.conftest import Hosted
 from tests.features.console.pages import Served
 from tests.features.console.test_conversation import violations
@@ -254,7 +255,10 @@ def test_a_button_that_was_held_long_enough_does_it_on_a_busy_page_too(viewer: V
     viewer.shows("End the visit: done", ".told")
 
 
-def test_a_fork_shows_what_would_have_been_beside_what_was(viewer: Viewer, served: Served, hosted: Hosted) -> None:
+def test_a_fork_shows_what_would_have_been_beside_what_was(
+    viewer: Viewer, served: Served, hosted: Hosted, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(forking, "PATIENCE", HANG)
     hosted.send("face", {"x": 160, "y": 120})
     until(lambda: "ask_name" in hosted.exhibition.configuration, HANG)
     hosted.send("heard", {"result": "my name is Budi", "language": "en"})
