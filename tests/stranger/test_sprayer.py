@@ -66,6 +66,7 @@ def replace(file: Path, old: str, new: str) -> None:
         ("--help", "Installed packages with features: lumen-sprayer 1.0."),
         ("lint --strict", "nothing wrong; 3 files checked"),
         ("test", "1 story, 0 failed"),
+        ("test --real-skills", "1 story, 0 failed"),
         ("run --story visitor --robot recording --speed max", "does spray with duration 2s, nozzle left"),
         ("explain no-nozzle", "An action sprays from a nozzle that `sprayer` of lumen.yaml does not list."),
         ("graph", "hears my_name"),
