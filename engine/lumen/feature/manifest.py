@@ -315,7 +315,7 @@ class Phase(IntEnum):
     RECORD = auto()
     """Parts that receive everything that the others report."""
     BEHAVIOR = auto()
-    """The behaviour itself, which the other parts serve or watch. No feature has a part here yet."""
+    """The behaviour itself, which the other parts serve or watch."""
     WORLD = auto()
     """The visitor and the robot."""
     WATCH = auto()

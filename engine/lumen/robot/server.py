@@ -1,4 +1,4 @@
-"""Lumen Server: the five senses on the bus, each on a thread of its own, while commands execute."""
+"""Lumen Server: the robot's senses on the bus, each on a thread of its own, while commands execute."""
 
 import logging
 import time

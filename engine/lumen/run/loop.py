@@ -125,7 +125,8 @@ class Rescuer(Protocol):
     def rescue(self, error: Exception) -> Sequence[Command] | None:
         """Switch to another bundle; return the commands of the switch.
 
-        Return None if no switch is possible. If no rescuer can switch, the fault ends the run.
+        Return None if no switch is possible. If no rescuer can switch, the event or timer with the fault is dropped; a
+        fault outside of them ends the run.
         """
         ...
 

@@ -1,4 +1,4 @@
-"""A module of an exhibition: memory, eyes, ears, voice, social or show, independent of the other parts."""
+"""A module of an exhibition, such as the memory or the eyes, independent of the other parts."""
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
