@@ -4,6 +4,7 @@ import math
 import os
 import sys
 from array import array
+from collections.abc import Callable
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -12,6 +13,7 @@ import imageio_ffmpeg
 import numpy as np
 import pytest
 
+from lumen.cli.main import main
 from lumen.language.commands import PlaySound
 from lumen.project.sounds import sound_duration
 from lumen.run.audio_track import RATE, AudioTrack
@@ -125,6 +127,22 @@ def test_it_is_played_by_the_player_of_this_machine(
     speaker.play(PlaySound("sounds/bell.wav", LENGTH), 1.0, 1.0)
     speaker.play(PlaySound("no\0file", LENGTH), 1.0, 1.0)
     speaker.close()
+
+
+@pytest.mark.process
+@pytest.mark.physics
+def test_each_robot_of_a_house_plays_its_sounds(project: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    played = list[tuple[str, Path]]()
+
+    def play(speaker: Loudspeaker, sound: PlaySound, volume: float, now: float) -> Callable[[float], None]:
+        played.append((sound.file, speaker._root))
+        return lambda then: None
+
+    monkeypatch.setattr(Loudspeaker, "play", play)
+    robots = "robots: {ana: {model: nao, at: {x: 0, y: -0.5}}, ben: {model: nao, at: {x: 0, y: 0.5}}}"
+    (project / "lumen.yaml").write_text(MAIN.replace("robot: {name: NAO, model: nao}", robots))
+    assert main(["run", str(project), "--robot", "simulation", "--speed", "max", "--for", "500ms"]) == 0
+    assert played == [("sounds/bell.wav", project)] * 2
 
 
 def test_that_there_is_no_player_is_said_once(

@@ -4,7 +4,8 @@ import argparse
 import os
 import time
 from collections.abc import Sequence
-from contextlib import ExitStack
+from contextlib import ExitStack, closing
+from pathlib import Path
 
 from lumen.bus.addresses import within_process
 from lumen.cli.main import ready
@@ -19,6 +20,7 @@ from lumen.language.projects import Project
 from lumen.language.stories import Story
 from lumen.ports import Clock
 from lumen.run.house import House
+from lumen.run.loudspeaker import sounding
 from lumen.run.plan import Plan
 from lumen.run.presence import BRAIN, ROBOT_PART
 from lumen.run.run_start import BegunRun
@@ -67,11 +69,10 @@ class HouseRun:
         what = ", ".join(self._parts) + " of " if self._parts else ""
         print(f"{project.name}: {what}{', '.join(house.nodes)}, ready after {ready():.1f} s.", flush=True)
         began = time.monotonic()
-        try:
+        robots = [setup.robot for setup in self._setups.values()]
+        with sounding(robots, Path(project.root), audible=options.speed != "max"), closing(house):
             house.start()
             lived = house.run(period_of(options.period))
-        finally:
-            house.close()
         took = time.monotonic() - began
         of_parts = [f"{name}: {line}" for name, node in house.nodes.items() for line in node.summary()]
         told = {name: troubles_of(node, judged=self.stories[name] is not None) for name, node in house.nodes.items()}

@@ -28,11 +28,10 @@ from lumen.project.broken_features import broken_features
 from lumen.project.home import home_of as home_of_run
 from lumen.project.main_file import main_settings
 from lumen.project.running_project import is_substituted, project_to_run
-from lumen.robot.bounded_robot import ability
 from lumen.run.audio_track import AudioTrack
 from lumen.run.chosen_stories import project_of
 from lumen.run.compose import begin, claim
-from lumen.run.loudspeaker import Loudspeaker, Sounds
+from lumen.run.loudspeaker import sounding
 from lumen.run.one_robot import robots_of
 from lumen.run.plan import Plan
 from lumen.run.presence import BRAIN, ROBOT_PART, all_parts
@@ -306,8 +305,7 @@ def _heard(
 
             language = language_of(one.project, options.language) or one.project.languages[0]
             stack.callback(voiced(setup, options.voice, options.sound, language, track))
-        if setup and (sounding := ability(setup.robot, Sounds)):
-            loudspeaker = Loudspeaker(Path(one.project.root), track, audible=options.speed != "max")
-            sounding.sound_with(loudspeaker)
-            stack.callback(loudspeaker.close)
+        if setup:
+            root, audible = Path(one.project.root), options.speed != "max"
+            stack.enter_context(sounding([setup.robot], root, track, audible=audible))
         yield

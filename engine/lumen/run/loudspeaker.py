@@ -5,12 +5,15 @@ import subprocess
 import sys
 import wave
 from array import array
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Protocol, runtime_checkable
 
 from lumen.language.commands import PlaySound
+from lumen.ports import Robot
 from lumen.project.files import on_disk
+from lumen.robot.bounded_robot import ability
 from lumen.run.audio_track import AudioTrack
 from lumen.run.sound import Sound
 
@@ -106,3 +109,18 @@ class Sounds(Protocol):
     def sound_with(self, playback: Loudspeaker) -> None:
         """Play all sounds on a loudspeaker."""
         ...
+
+
+@contextmanager
+def sounding(
+    robots: Iterable[Robot], root: Path, track: AudioTrack | None = None, *, audible: bool = True
+) -> Iterator[None]:
+    """Let the robots that can be given a loudspeaker share one until the block ends; see `Loudspeaker`."""
+    loudspeaker = Loudspeaker(root, track, audible=audible)
+    for each in robots:
+        if able := ability(each, Sounds):
+            able.sound_with(loudspeaker)
+    try:
+        yield
+    finally:
+        loudspeaker.close()
