@@ -25,7 +25,7 @@ from patterns import importable, imports, measured
 from lumen.bus.checking import SchemaCheck
 from lumen.expressions.json_schema import JsonSchema
 from lumen.project.files import read_files
-from lumen.project.project_folders import FILE_KINDS, kind_of
+from lumen.project.project_folders import file_kinds, kind_of
 from lumen.project.schema import load_schema
 from lumen.project.yaml_reader import parse
 
@@ -104,7 +104,7 @@ def main() -> int:
 
 def files(makers: Makers, rounds: int) -> tuple[dict[str, list[float]], dict[str, list[float]]]:
     """Return the times relative to Lumen of compiling schemas of files, and of checking all shipped files of a kind."""
-    documents: dict[str, list[Any]] = {kind: [] for kind in FILE_KINDS}
+    documents: dict[str, list[Any]] = {kind: [] for kind in file_kinds()}
     for file, content in read_files(ROOT).items():
         kind = kind_of(file)
         document = parse(file, content)[0] if kind else None
