@@ -206,7 +206,7 @@ def odd(text):
 def test_a_faulty_function_is_an_error_of_its_expression(installed: Installed) -> None:
     installed.write("odd", FUNCTIONS, odd_functions=ODD)
     for argument, message in (
-        ("'raises'", "this can't be evaluated: division by zero"),
+        ("'raises'", "this can't be evaluated: `odd` raised ZeroDivisionError: division by zero"),
         ("'nan'", "`odd` returned a value that is not JSON data"),
         ("'object'", "`odd` returned a value that is not JSON data"),
         ("'long'", "the value becomes too large"),

@@ -6,11 +6,10 @@ import pytest
 from written_distribution import on_path, write_distribution
 
 import lumen
-from lumen.cli.main import command_line, main
+from lumen.cli.main import main
 from lumen.errors import ExpressionError
 from lumen.expressions import Scope, compile_expression
 from lumen.feature import VerbRow, features
-from lumen.feature.checking import TAKEN
 from lumen.language.added_verbs import arguments_of, durations_of, short_argument
 from lumen.lint import check_files
 from lumen.project.broken_features import shown
@@ -18,7 +17,6 @@ from lumen.project.files import read_files
 from lumen.project.formats.importers import recognised
 from lumen.run.forgetting.added import Forgetting
 from lumen.run.forgetting.files import forget_in
-from lumen.run.setup import robot_options
 from tests import ROOT
 from tests.copying import copied_project
 from tests.stranger.installing import Installed
@@ -357,13 +355,6 @@ def test_a_robot_cannot_have_an_option_of_lumen(option: str, installed: Installe
     (finding,) = check_files(hall, read_files(hall))[1]
     name = option.split("'")[1]
     assert finding.message.endswith(f"no robot can have an option `--{name}`: choose another word")
-
-
-def test_the_taken_names_are_those_of_lumens_options_of_run() -> None:
-    actions = command_line(("run",)).verbs["run"]._actions
-    flags = {word.removeprefix("--").replace("-", "_") for each in actions for word in each.option_strings}
-    own = {option.destination for option in robot_options()}
-    assert {*flags, *(each.dest for each in actions), "run", "verb"} - own - {"_h"} == TAKEN
 
 
 def test_an_api_that_is_no_number_is_shown_as_it_is_written(installed: Installed, hall: Path) -> None:
