@@ -142,7 +142,7 @@ def started(
                 with faults_reported(feature, f"its `{where}`", lambda fault: tell(str(fault)), LumenError):
                     resolve(where)(root)
             projects = {
-                name: startup_project(root, directory, last_good=last_good, warn=once)
+                name: startup_project(root, directory, last_good=last_good, warn=tell, tell_fault=once)
                 for name, directory in directories.items()
             }
             yield BegunRun(root, directories, projects, failures)

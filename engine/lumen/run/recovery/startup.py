@@ -19,12 +19,18 @@ from lumen.run.watcher import SavedFiles
 
 
 def startup_project(
-    root: Path, run_directory: RunDirectory, *, last_good: bool, warn: Callable[[str], None] = lambda _: None
+    root: Path,
+    run_directory: RunDirectory,
+    *,
+    last_good: bool,
+    warn: Callable[[str], None] = lambda _: None,
+    tell_fault: Callable[[str], None] = lambda _: None,
 ) -> Project:
     """Return the project in a folder, or the last good one.
 
     The last good one is used if the project has errors and `last_good` is set, or if it crashed at several starts.
-    `warn` is called with lines for the operator. Files are first read in another process, because they may crash it.
+    `warn` is called with lines for the operator, `tell_fault` with faults of packages that read parts of the files.
+    Files are first read in another process, because they may crash it.
     Raises ProjectError or FatalFilesError if neither can be used.
     """
     files = read_files(root, run_directory.robot)
@@ -47,7 +53,7 @@ def startup_project(
             return _instead(run_directory, good, project.hash, why)
     for finding in diagnostics:
         if finding.code == BROKEN_FEATURE and finding.place != Place(MAIN_FILE):  # else the command has printed it
-            warn(str(finding))
+            tell_fault(str(finding))
     run_directory.begin(project, files)
     return project
 
