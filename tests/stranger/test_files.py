@@ -8,7 +8,6 @@ from unittest.mock import patch
 import pytest
 
 from lumen.cli.main import main
-from lumen.cli.schema import settings
 from lumen.features.editor.analysis import Analysis
 from lumen.features.editor.hover import hover
 from lumen.lint import check_files
@@ -91,15 +90,22 @@ def test_the_editor_explains_its_keys(stranger: Path, root: Path) -> None:
 
 
 @pytest.mark.process
-def test_lumen_schema_prints_its_schema(stranger: Path, root: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_lumen_schema_prints_its_schema(
+    stranger: Path, root: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def assigned() -> dict[str, list[str]]:
+        assert main(["schema", "--vscode"]) == 0
+        return dict(json.loads(capsys.readouterr().out)["yaml.schemas"])
+
+    monkeypatch.chdir(root)
     assert main(["schema", "guests"]) == 0
     own = capsys.readouterr().out
     assert json.loads(own)["description"] == "The visitors who are expected"
     assert main(["schema"]) == 0
     assert ["guests", "guests.yaml", "Guests"] in [line.split() for line in capsys.readouterr().out.splitlines()]
-    assert not [each for each in settings(root)["yaml.schemas"] if "guests" in each]
+    assert not [each for each in assigned() if "guests" in each]
     (root / "schemas/guests.schema.json").write_text(own)
-    assert settings(root)["yaml.schemas"]["./schemas/guests.schema.json"] == ["guests.yaml"]
+    assert assigned()["./schemas/guests.schema.json"] == ["guests.yaml"]
     assert list(unread_in(root, (), lambda _: None)) == []
 
 
