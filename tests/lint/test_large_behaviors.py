@@ -6,7 +6,7 @@ from types import ModuleType
 
 import pytest
 
-from lumen.lint import edges, endless_chains, events, falling, guards, regions
+from lumen.lint import check_files, edges, endless_chains, events, falling, guards, regions
 from lumen.lint.instant_chains import MAX_STEPS
 from lumen.project.building import draft
 from tests.formats.test_large import calls
@@ -80,3 +80,14 @@ def test_a_rule_follows_no_event_that_selects_nothing() -> None:
     project = draft({"lumen.yaml": PROJECT, "behaviors/hello.yaml": text.encode()})
     endless_chains.check(project)
     assert "endless-chain" not in {str(d.code) for d in project.diagnostics}
+
+
+def test_a_chain_through_an_invoked_behaviour_is_followed_again_when_that_changes() -> None:
+    hello = b"initial: one\nstates:\n  one: {invoke: {behavior: short, onDone: two}}\n  two: {after: {0s: one}}\n"
+    at_once, later = (f"states: {{wait: {{{way}: end}}, end: {{type: final}}}}\n" for way in ("always", "after: {1s"))
+    later = later.replace("1s: end}", "1s: end}}")
+    endless = []
+    for short in (at_once, later, at_once):
+        files = {"lumen.yaml": PROJECT, "behaviors/hello.yaml": hello, "behaviors/short.yaml": short.encode()}
+        endless.append("endless-chain" in {str(d.code) for d in check_files(Path("/nowhere"), files)[1]})
+    assert endless == [True, False, True]
