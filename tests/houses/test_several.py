@@ -143,6 +143,7 @@ def test_the_command_line_runs_all_of_them(two: Path, capsys: pytest.CaptureFixt
     assert "--voice works with only one robot" in capsys.readouterr().err
 
 
+@pytest.mark.process
 @for_each(
     ("robot", "told"),
     [
