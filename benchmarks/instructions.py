@@ -4,8 +4,8 @@
 
 Times differ by a factor of two between two runs on a machine that others use too; the number of instructions differs
 by less than one percent, and until the first word by two, whatever else runs. It leaves out caches and disks; pairs.py
-measures times. Both checkouts work on the other checkout's project, with this Python. A figure of an event is the
-difference between a short and a long run; each other figure is the median of three runs.
+measures times. Both checkouts work on the other checkout's project, with this Python. A figure of an event
+or of a saved file is the difference between a short and a long run; each other figure is the median of three runs.
 """
 
 import argparse
@@ -34,6 +34,8 @@ from lumen.project.project_folders import MAIN_FILE, PROJECT_FOLDERS
 RUNS = 3
 FEW, MANY = 1_000, 6_000
 """The events of a short and a long run, after as many as the short one to warm up."""
+FEW_FILES, MANY_FILES = 5, 15
+"""The same for saved files."""
 WORK = """
 import sys
 from visit import tour
@@ -45,6 +47,18 @@ def messages(checked):
     here = bus.validated(here, bus.lumen.load(sys.argv[1])) if checked else here
     here.subscribe(face, lambda message: None)
     return lambda count: [here.publish(face, body) for _ in range(count)] and None
+
+def saved():
+    import lint
+    root, number = lint.Path(sys.argv[1]), 0
+    files = dict(lint.read_files(root))
+    edited = "lumen.yaml", "behaviors/tour.yaml", "behaviors/stories/visitor.yaml", "motions/sing.yaml"
+    def work(count):
+        nonlocal number
+        for name in (edited * count)[:count]:
+            number += 1
+            lint.check_files(root, {**files, name: files[name] + b"# %d" % number})
+    return work
 """
 """The functions for the rows of events; both checkouts have the modules that they import."""
 COUNTER = ("valgrind", "--tool=cachegrind", "--cache-sim=no", "--cachegrind-out-file=/dev/null")
@@ -71,7 +85,7 @@ def main() -> int:
         parser.error(f"there is no benchmarks/statechart.py in {options.checkout}")
     if not shutil.which("valgrind"):
         parser.error("there is no `valgrind`: install the package of that name")
-    print(f"{'':<40}{'there':>12}{'here':>12}{'ratio':>8}", flush=True)
+    print(f"{'':<42}{'there':>12}{'here':>12}{'ratio':>8}", flush=True)
     with tempfile.TemporaryDirectory() as name, ThreadPoolExecutor() as pool:
         folder, checkout = Path(name), options.checkout.resolve()
         here = with_project_of(checkout, folder / "here")
@@ -80,7 +94,7 @@ def main() -> int:
         for what, measure in ROWS.items():
             if any(word in what for word in options.rows):
                 theirs, ours = pool.map(measure, places)
-                print(f"{what:<40}{_shown(theirs):>12}{_shown(ours):>12}{ours / theirs:>8.3f}", flush=True)
+                print(f"{what:<42}{_shown(theirs):>12}{_shown(ours):>12}{ours / theirs:>8.3f}", flush=True)
     return 0
 
 
@@ -145,13 +159,13 @@ def _spoken(place: Place) -> int:
         return _counted(log.read())
 
 
-def _event(make: str, place: Place) -> float:
+def _event(make: str, place: Place, few: int = FEW, many: int = MANY) -> float:
     """Return the instructions of one event of the work that the expression `make` returns."""
 
     def run(count: int) -> int:
-        return _count(place, "-c", f"{WORK}\nwork = {make}; work({FEW}); work({count})", place.project)
+        return _count(place, "-c", f"{WORK}\nwork = {make}; work({few}); work({count})", place.project)
 
-    return (run(MANY) - run(FEW)) / (MANY - FEW)
+    return (run(many) - run(few)) / (many - few)
 
 
 def _count(place: Place, *words: str | Path) -> int:
@@ -187,6 +201,7 @@ ROWS: dict[str, Callable[[Place], float]] = {
     "`lumen lint`, nothing kept": _lint,
     "the same files again": _same_files,
     "one file changed": _one_changed,
+    "a saved file, checked by the same process": partial(_event, "saved()", few=FEW_FILES, many=MANY_FILES),
     "the first word of the recording robot": _first_word,
     "an event of a ring of 15 states": partial(_event, "sending(ring(15))"),
     "an event of three levels, two regions": partial(_event, "sending(regions())"),
