@@ -4,7 +4,7 @@ import argparse
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from lumen.cli.extras import of_extras, returned
+from lumen.cli.extras import RunExtra, of_extras, returned
 from lumen.errors import UsageError
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.projects import Project
@@ -82,5 +82,9 @@ def wishes(options: argparse.Namespace, project: Project, story: Story | None, p
 
     Raises UsageError if they can't be fulfilled.
     """
-    wished = lambda extra: returned(extra.wishes(options, project, story, period), Mapping, str)  # noqa: E731
+
+    def wished(extra: RunExtra) -> Mapping[str, Any]:
+        found: Mapping[str, Any] = returned(extra.wishes(options, project, story, period), Mapping, str)
+        return found
+
     return {name: value for found in of_extras("run_options", wished) for name, value in found.items()}
