@@ -196,7 +196,7 @@ def _at_root(root: Path, look: Callable[[Path], object]) -> Iterator[Unread]:
 
 @lru_cache  # a folder of the root is compared again at each check
 def _folder_named_like(name: str) -> str:
-    """Return the folder of a project with nearly this name; empty if there is none."""
+    """Return the folder of a project whose name is similar; empty if no name is."""
     known = {PurePosixPath(path).name: path for path in (*reversed(tuple(KINDS)), *PROJECT_FOLDERS, DRIVERS_FOLDER)}
     near = nearest(name, known)
     return known[near] if near else ""

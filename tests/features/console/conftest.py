@@ -112,7 +112,7 @@ class Shared:
 
 @pytest.fixture(autouse=True)
 def patient(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A command counts as unsent later than beside a robot: a busy machine may take it late."""
+    """Let a command count as unsent only after HANG, because a busy machine may send it late."""
     monkeypatch.setattr(commands, "SENT_TIMEOUT", HANG)
 
 
