@@ -11,8 +11,9 @@ from lumen.language.projects import Project
 from lumen.lint.codes import codes
 from lumen.lint.ignores import obey
 from lumen.lint.several_robots import together
+from lumen.project.assembly import assemble
 from lumen.project.broken_features import broken, faults_reported, is_finding, shown
-from lumen.project.building import assemble, draft
+from lumen.project.building import draft
 from lumen.project.chosen_robot import as_robot, chosen_robot
 from lumen.project.draft import ProjectDraft
 from lumen.project.files import read_files

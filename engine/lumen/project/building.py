@@ -1,4 +1,4 @@
-"""Build a whole project: all its files into a `ProjectDraft`, and a draft without errors into a `Project`."""
+"""Build all files of a project into a `ProjectDraft`."""
 
 import hashlib
 from collections.abc import Iterator, Mapping, Sequence
@@ -17,7 +17,6 @@ from lumen.language.folders import FUNCTIONS_FOLDER, KNOWLEDGE_FOLDER, QUESTIONS
 from lumen.language.json_paths import values_in
 from lumen.language.machines import MachineDefinition
 from lumen.language.motions import MotionDefinition
-from lumen.language.projects import Project
 from lumen.language.robots import Body
 from lumen.language.shared import SharedKeys
 from lumen.language.stories import Story
@@ -33,7 +32,7 @@ from lumen.project.common_words import COMMON, COMMON_FILE, is_shipped, with_com
 from lumen.project.controllers import build_controller
 from lumen.project.document_report import DocumentReport
 from lumen.project.draft import ProjectDraft
-from lumen.project.files import LEADS_OUT, MISTAKEN_FOLDERS, Unreadable, fingerprint
+from lumen.project.files import LEADS_OUT, MISTAKEN_FOLDERS, Unreadable
 from lumen.project.functions import build_function, joined
 from lumen.project.knowledge import MARKDOWN_SUFFIX, build_passage, build_questions
 from lumen.project.lending import lend, shipped_models
@@ -177,48 +176,6 @@ def knowledge_parts(files: Mapping[str, bytes]) -> ProjectDraft:
 def sayings_parts(files: Mapping[str, bytes]) -> ProjectDraft:
     """Return the sayings of a project. Other files are not read."""
     return draft({file: content for file, content in files.items() if file.startswith(f"{SAYINGS_FOLDER}/")})
-
-
-def assemble(found: ProjectDraft, root: str) -> Project:
-    """Return the project that a draft without errors describes."""
-    settings, body = found.settings, found.body
-    assert settings is not None
-    assert body is not None
-    return Project(
-        root=root,
-        name=settings.name or PurePosixPath(root.replace("\\", "/")).name,
-        robot=settings.robot,
-        robots=settings.robots,
-        told_apart=settings.told_apart,
-        house=settings.house,
-        body=body,
-        hall=settings.hall,
-        behavior=settings.behavior,
-        behaviors=found.behaviors,
-        knowledge=found.knowledge,
-        questions=found.questions,
-        controllers=found.controllers,
-        motions=found.motions,
-        life=found.life,
-        gestures=found.gestures,
-        routes=settings.routes,
-        stories=found.stories,
-        sayings=found.sayings,
-        functions=found.functions,
-        messages=found.messages,
-        languages=settings.languages,
-        timezone=settings.timezone,
-        story=settings.story,
-        stage=settings.stage,
-        bus=settings.bus,
-        patience=settings.patience,
-        modules=settings.modules,
-        aliases=settings.aliases,
-        sections=settings.sections,
-        verbs={name: row._replace(root=root, robot=settings.robot) for name, row in found.verbs.rows.items()},
-        hash=fingerprint(found.files),
-        documents={file: report.document for file, report in found.reports.items()},
-    )
 
 
 def _main(found: ProjectDraft, content: bytes, robot: str) -> BuiltFile[Settings] | None:

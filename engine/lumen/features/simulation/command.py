@@ -20,7 +20,8 @@ from lumen.language.projects import Project
 from lumen.language.robots import Body
 from lumen.motion.limits import overspeed
 from lumen.ports import Perform, RobotCommand
-from lumen.project.building import assemble, motion_parts
+from lumen.project.assembly import assemble
+from lumen.project.building import motion_parts
 from lumen.project.document import Document
 from lumen.project.document_report import DocumentReport
 from lumen.project.draft import ProjectDraft, body_of
