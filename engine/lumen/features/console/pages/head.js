@@ -21,6 +21,7 @@ import {
   speak,
   t,
   useEffect,
+  useLayoutEffect,
   useRedraw,
   useRef,
   useState,
@@ -173,9 +174,9 @@ export function Head() {
   useEffect(() => {
     const title = name ? `${name}: ${t(`page.${lumen.page || "now"}`)} · Lumen` : "Lumen";
     alarm.show(looks ? alarms : null, title);
-    byId("skip").textContent = t("skip");
     document.querySelector("rest-button[main]")?.toggleAttribute("several", name === null && names.length > 1);
   });
+  useLayoutEffect(() => void (byId("skip").textContent = t("skip"))); // in the same frame as the rest of the page
   return html`<div class="who"><p class="name">${name ?? "Lumen"}</p><${Connection} robot=${robot} alarms=${alarms} />
     </div>
     ${name !== null && live.role !== "nobody" && html`<${Links} name=${name} several=${names.length > 1} />`}

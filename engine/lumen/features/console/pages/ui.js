@@ -70,8 +70,10 @@ export function speak(code) {
   document.documentElement.lang = code;
   keep("lumen.language", code);
   for (const button of document.querySelectorAll("rest-button")) button.speak();
-  redraw();
+  draw(); // not in the next frame: what draws itself until then would be in another language than the rest
 }
+
+const draw = () => redraws.forEach((one) => one({}));
 
 /** Draw everything anew, once in the next frame, whoever asks. A hidden page draws nothing and needs nothing drawn. */
 let asked = false;
@@ -80,7 +82,7 @@ export function redraw() {
   asked = true;
   requestAnimationFrame(() => {
     asked = false;
-    for (const one of redraws) one({});
+    draw();
   });
 }
 export function useRedraw() {
