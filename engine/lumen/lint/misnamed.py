@@ -17,7 +17,7 @@ def check(draft: ProjectDraft) -> None:
     if draft.root is None:
         return
     for folder in ("", *sorted((*ALL_FOLDERS, *MISTAKEN_FOLDERS))):
-        draft.looks.at(draft.root / folder)
+        draft.looks.at(f"{draft.root}/{folder}")
         for there, meant in misnamed_in(draft.root, folder):
             name = meant if meant.endswith("/") else meant.rpartition("/")[2]
             message = f"Lumen does not read this: its name is not `{name}`"

@@ -28,7 +28,7 @@ def outside(draft: ProjectDraft, folder: str, name: str) -> bool:
         return True
     if draft.root is None:
         return False
-    real, project = draft.looks.at(draft.root / path), draft.looks.at(draft.root)
+    real, project = draft.looks.at(f"{draft.root}/{path}"), draft.looks.at(draft.root)
     return not real.startswith(project.rstrip(os.sep) + os.sep)
 
 
@@ -36,21 +36,15 @@ def missing(draft: ProjectDraft, folder: str, name: str) -> str:
     """Return the hint for a file that is missing in models/; empty if the file is there, or if this is unknown."""
     if draft.root is None:
         return ""
-    models = draft.root / _MODELS
-    beside = models / folder
-    for path in (models, beside, beside / name):
+    models = f"{draft.root}/{_MODELS}"
+    beside = os.path.join(models, folder)
+    file = os.path.join(beside, name)
+    for path in (models, beside, file):
         draft.looks.at(path)
-    if not models.is_dir() or _there(beside / name):
+    if not os.path.isdir(models) or os.path.isfile(file):
         return ""
-    near = nearest(PurePosixPath(name).name, [path.name for path in beside.glob("*")] if beside.is_dir() else [])
+    near = nearest(PurePosixPath(name).name, [path.name for path in Path(beside).glob("*")])
     return f"did you mean `{near}`?" if near else "add the file, or delete the reference to it"
-
-
-def _there(path: Path) -> bool:
-    try:
-        return path.is_file()
-    except OSError:
-        return False
 
 
 BROKEN_MODEL = Code("broken-model", "robot", ERROR, "a model is not MJCF, or lacks a file or a joint")

@@ -20,6 +20,7 @@ from lumen.language.machines import Hears, MachineDefinition
 from lumen.lint.logic import tree
 from lumen.lint.walk import expression_sites
 from lumen.project.draft import ProjectDraft
+from lumen.project.memoization import Same, memoize
 from lumen.talk.patterns import slots_of
 
 
@@ -36,6 +37,10 @@ class Named(NamedTuple):
 
 def named_in(machine: MachineDefinition) -> Named:
     """Return the names that a behaviour uses; its expressions must be valid."""
+    return memoize(("names", machine.id), Same(machine), lambda: _named_in(machine))
+
+
+def _named_in(machine: MachineDefinition) -> Named:
     keys, lists, texts = set[str | None](), set[str | None](), set[str]()
     for root in _trees(machine):
         keys |= {*read_names(root, "context")}

@@ -4,7 +4,8 @@ import hashlib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
-from pathlib import PurePosixPath
+from itertools import chain
+from os.path import splitext
 from typing import Any, TypeVar
 from unicodedata import normalize
 
@@ -71,9 +72,11 @@ def belongs_to(data: Any, body: Body) -> bool:
     """Return True if the body has both postures of a passage, and at least one of its joints if it names any."""
     if not isinstance(data, Mapping) or not {"start", "end"} <= data.keys():
         return True  # its faults are reported elsewhere
-    named = set(_joints(data))
-    known = data["start"] in body.postures and data["end"] in body.postures
-    return known and not (named and named.isdisjoint(body.joints))
+    if data["start"] not in body.postures or data["end"] not in body.postures:
+        return False
+    joints = _joints(data)
+    first = next(joints, None)
+    return first is None or any(joint in body.joints for joint in chain((first,), joints))
 
 
 def _joints(data: Any) -> Iterator[str]:
@@ -276,24 +279,22 @@ def _each(
     names, read = set(), dict[str, BuiltFile[T]]()
     files = found.files if files is None else files
     for file, content in files.items():
-        if file.rpartition("/")[0] != folder or (path := PurePosixPath(file)).suffix not in (
-            ".yaml",
-            ".yml",
-            MARKDOWN_SUFFIX,
-        ):
+        above, _, name = file.rpartition("/")
+        stem, suffix = splitext(name)
+        if above != folder or suffix not in (".yaml", ".yml", MARKDOWN_SUFFIX):
             continue
-        if path.suffix == ".yml":
-            hint = f"rename it to {path.stem}.yaml, or delete it"
+        if suffix == ".yml":
+            hint = f"rename it to {stem}.yaml, or delete it"
             found.say(NOT_READ, file, "Lumen does not read files that end in .yml", hint)
             continue
-        composed = normalize("NFC", path.stem)
-        if path.stem in names or (path.stem != composed and f"{folder}/{composed}{path.suffix}" in files):
+        composed = normalize("NFC", stem)
+        if stem in names or (stem != composed and f"{folder}/{composed}{suffix}" in files):
             message = f"Lumen does not read this file: {folder}/ has another file called {composed}"
             found.say(NOT_READ, file, message, "combine them, or rename one of them")
             continue
-        names.add(path.stem)
+        names.add(stem)
         if (each := _read(found, file, content, kind_in(folder), build, around, verbs)) is not None:
-            read[path.stem] = each
+            read[stem] = each
     found.names[folder] = found.names.get(folder, frozenset()) | names
     return read
 
@@ -367,9 +368,9 @@ def _motions(found: ProjectDraft, folder: str) -> dict[str, MotionDefinition]:
 def _strangers(found: ProjectDraft) -> None:
     """Report subfolders of motions/ that are named after no robot model: their motions are never played."""
     known = {*found.names[MODELS], *shipped_models()}
-    inside = {PurePosixPath(*PurePosixPath(file).parent.parts[:2]) for file in found.files}
-    folders = {str(path): path.name for path in inside if str(path.parent) == MOTIONS}
-    for folder, name in folders.items():
+    inside = (file.split("/") for file in found.files if file.startswith(f"{MOTIONS}/"))
+    for name in {parts[1] for parts in inside if len(parts) > 2}:
+        folder = f"{MOTIONS}/{name}"
         if is_robots_own(folder) and name not in known:
             hint = robots_own_hint(name, known)
             first = min(file for file in found.files if file.startswith(f"{folder}/"))
@@ -407,10 +408,10 @@ def _with_own(
 def _messages(found: ProjectDraft) -> None:
     names = set()
     for file, content in {**found.files, **found.lent}.items():
-        path = PurePosixPath(file)
-        if str(path.parent) != MESSAGES or not path.name.endswith(SCHEMA_SUFFIX):
+        folder, _, name = file.rpartition("/")
+        if folder != MESSAGES or not name.endswith(SCHEMA_SUFFIX):
             continue
-        name = path.name.removesuffix(SCHEMA_SUFFIX)
+        name = name.removesuffix(SCHEMA_SUFFIX)
         names.add(name)
         if isinstance(content, Unreadable):
             reason = content.decode("utf-8", "replace")

@@ -25,7 +25,7 @@ class Looks:
         self._folders: dict[str, str] = {}
         """The resolved paths of folders that were looked into."""
 
-    def at(self, path: Path) -> str:
+    def at(self, path: str | Path) -> str:
         """Record that the result depends on this path: on the file there, the entries of a folder, or its absence.
 
         Return the resolved path, empty for a name that no file can have.
@@ -50,7 +50,7 @@ class Looks:
         libraries = {name.partition(".")[0] for name in sys.modules} - sys.stdlib_module_names
         files = (getattr(sys.modules.get(name), "__file__", None) for name in sorted(libraries))
         for path in (*TZPATH, *filter(None, files)):
-            self.at(Path(path))
+            self.at(path)
 
     def settled(self) -> bool:
         """Return True if the next change of any recorded path will certainly alter its times."""
@@ -64,12 +64,12 @@ class Looks:
 def unchanged(looks: Mapping[str, Mapping[str, Sequence[str | int]]]) -> bool:
     """Return True if no path has changed since `looks`, the result of `Looks.to_json`, was recorded."""
     folders: dict[str, str] = {}
-    return all(list(_seen(Path(path), folders)) == list(seen) for path, seen in looks["paths"].items()) and all(
+    return all(list(_seen(path, folders)) == list(seen) for path, seen in looks["paths"].items()) and all(
         str(package_file(mjcf) or "") == found for mjcf, found in looks["packages"].items()
     )
 
 
-def _seen(path: Path, folders: dict[str, str]) -> Seen:
+def _seen(path: str | Path, folders: dict[str, str]) -> Seen:
     """Return the state of a path; only its target if nothing is there. `folders` caches resolved folders."""
     try:
         real = _real(path, folders)
@@ -81,7 +81,7 @@ def _seen(path: Path, folders: dict[str, str]) -> Seen:
     return real, status.st_dev, status.st_ino, status.st_mode, status.st_size, status.st_mtime_ns, status.st_ctime_ns
 
 
-def _real(path: Path, folders: dict[str, str]) -> str:
+def _real(path: str | Path, folders: dict[str, str]) -> str:
     """Return the resolved path. A path that is not a link is checked with one call instead of one for each folder."""
     text = str(path)
     folder, name = os.path.split(text)

@@ -2,7 +2,7 @@
 
 import os
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path, PurePosixPath
 from typing import Any, NamedTuple
 
@@ -21,9 +21,12 @@ class Misnamed(NamedTuple):
     meant: str
 
 
-def misnamed_in(root: Path, folder: str) -> Iterator[Misnamed]:
-    """Yield files of a project folder with a mistyped ending, such as `.yml`, and folders with capital letters."""
-    endings, listed = endings_in(folder), listed_in(root, folder)
+def misnamed_in(root: Path, folder: str, listed: Sequence[str] | None = None) -> Iterator[Misnamed]:
+    """Yield files of a project folder with a mistyped ending, such as `.yml`, and folders with capital letters.
+
+    `listed` are the names in the folder, if the caller has listed them.
+    """
+    endings, listed = endings_in(folder), listed_in(root, folder) if listed is None else listed
     for name in listed:
         if endings and name.endswith(endings) and not name.startswith("."):
             continue  # read, as nearly all files are
@@ -53,7 +56,7 @@ def misnamed_for(root: Path, folder: str, name: str) -> Misnamed | None:
 def listed_in(root: Path, folder: str) -> list[str]:
     """Return the names in a folder, sorted; none if it can't be listed or lies outside the project."""
     try:
-        listed = sorted(os.listdir(root / folder))
+        listed = sorted(os.listdir(f"{root}/{folder}"))  # a path would take most of the time of this
         return listed if _is_inside(root, folder) else []
     except (OSError, RuntimeError):  # RuntimeError: links in a circle
         return []
@@ -61,7 +64,7 @@ def listed_in(root: Path, folder: str) -> list[str]:
 
 def _is_inside(root: Path, folder: str) -> bool:
     """Return True if a folder lies in the project after links are resolved."""
-    parts, path = folder.split("/"), str(root)  # one string for each level: paths take most of the time of this
+    parts, path = folder.split("/"), str(root)
     if not folder or not any(os.path.islink(path := f"{path}/{part}") for part in parts):
         return True
     return (root / folder).resolve().is_relative_to(root.resolve())

@@ -52,7 +52,7 @@ class Unread(NamedTuple):
     """The remedy, in words."""
 
 
-def unread_in(root: Path, models: Collection[str], look: Callable[[Path], object]) -> Iterator[Unread]:
+def unread_in(root: Path, models: Collection[str], look: Callable[[str], object]) -> Iterator[Unread]:
     """Yield files that a person probably wrote for this project and that are not read; of a folder, only the first.
 
     `models` are the robot models whose own folders in motions/ are read. `look` is called with each folder that the
@@ -63,12 +63,12 @@ def unread_in(root: Path, models: Collection[str], look: Callable[[Path], object
         yield from _within(root, folder, models, look)
 
 
-def _within(root: Path, folder: str, models: Collection[str], look: Callable[[Path], object]) -> Iterator[Unread]:
+def _within(root: Path, folder: str, models: Collection[str], look: Callable[[str], object]) -> Iterator[Unread]:
     """Yield the unread files in a folder whose files are read, and those in its subfolders."""
-    look(root / folder)
-    misnamed = {each.there.rstrip("/"): PurePosixPath(each.meant).name for each in misnamed_in(root, folder)}
-    endings = (_SCHEMA_ENDING,) if folder == MESSAGES else endings_in(folder)
+    look(f"{root}/{folder}")
     listed = listed_in(root, folder)
+    misnamed = {each.there.rstrip("/"): PurePosixPath(each.meant).name for each in misnamed_in(root, folder, listed)}
+    endings = (_SCHEMA_ENDING,) if folder == MESSAGES else endings_in(folder)
     for name in listed:
         path = f"{folder}/{name}"
         if endings and name.endswith(endings):
@@ -83,7 +83,7 @@ def _within(root: Path, folder: str, models: Collection[str], look: Callable[[Pa
             continue
         if name.startswith((".", "_")):
             continue
-        if os.path.isdir(root / path):
+        if os.path.isdir(f"{root}/{path}"):
             if path in ALL_FOLDERS or (kind_in(path) and _robot_of(path) in models):
                 yield from _within(root, path, models, look)
             elif not (is_robots_own(path) and _has_own(root, path)):  # such a folder is reported with its motions
@@ -92,7 +92,7 @@ def _within(root: Path, folder: str, models: Collection[str], look: Callable[[Pa
             yield from _of_file(folder, name, listed)
 
 
-def _of_folder(root: Path, folder: str, models: Collection[str], look: Callable[[Path], object]) -> Iterator[Unread]:
+def _of_folder(root: Path, folder: str, models: Collection[str], look: Callable[[str], object]) -> Iterator[Unread]:
     """Yield the first file in a folder that is not read, if its ending is that of a project's files."""
     above = folder.rpartition("/")[0]
     endings = tuple(dict.fromkeys((*(endings_in(above) or (".json",)), ".yaml", ".yml")))
@@ -102,15 +102,15 @@ def _of_folder(root: Path, folder: str, models: Collection[str], look: Callable[
         yield Unread(first, f"files in {folder}/ are not read", _home_hint(folder, models))
 
 
-def _first(root: Path, folder: str, endings: tuple[str, ...], depth: int, look: Callable[[Path], object]) -> str:
+def _first(root: Path, folder: str, endings: tuple[str, ...], depth: int, look: Callable[[str], object]) -> str:
     """Return the first file with one of these endings in a folder and those in it; empty if there is none."""
-    look(root / folder)
+    look(f"{root}/{folder}")
     inside = [name for name in listed_in(root, folder)[:MAX_LISTED] if not name.startswith((".", "_"))]
     if MAIN_FILE in inside:  # a project of its own
         return ""
     if found := next((name for name in inside if name.endswith(endings)), ""):
         return f"{folder}/{found}"
-    deeper = (f"{folder}/{name}" for name in inside if depth > 1 and os.path.isdir(root / folder / name))
+    deeper = (f"{folder}/{name}" for name in inside if depth > 1 and os.path.isdir(f"{root}/{folder}/{name}"))
     return next((found for each in deeper if (found := _first(root, each, endings, depth - 1, look))), "")
 
 
@@ -176,9 +176,9 @@ def _message_of(file: str) -> str:
     return stem if dot and nearest(last.lower(), ("schema",)) else f"{stem}{dot}{last}"
 
 
-def _at_root(root: Path, look: Callable[[Path], object]) -> Iterator[Unread]:
+def _at_root(root: Path, look: Callable[[str], object]) -> Iterator[Unread]:
     """Yield stray schemas, and the first file of each folder of the root with nearly the name of a project's folder."""
-    look(root)
+    look(str(root))
     schemas = {f"{kind}{_SCHEMA_ENDING}" for kind in file_kinds()}
     for name in listed_in(root, _SCHEMAS):
         if name.endswith(_SCHEMA_ENDING) and name not in schemas:
@@ -187,7 +187,9 @@ def _at_root(root: Path, look: Callable[[Path], object]) -> Iterator[Unread]:
     for name in listed_in(root, ""):
         if name in PROJECT_FOLDERS or name in MISTAKEN_FOLDERS or name == DRIVERS_FOLDER or name.startswith("."):
             continue
-        if name.lower() in ALL_FOLDERS or not os.path.isdir(root / name) or not (meant := _folder_named_like(name)):
+        if name.lower() in ALL_FOLDERS or not (meant := _folder_named_like(name)):
+            continue
+        if not os.path.isdir(f"{root}/{name}"):
             continue
         endings = (".py",) if meant == DRIVERS_FOLDER else endings_in(meant) or (".json",)
         if first := _first(root, name, endings, 1, look):
