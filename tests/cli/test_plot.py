@@ -57,8 +57,10 @@ def test_a_sheet_shows_every_variable_and_every_answer(head: Controller) -> None
     assert (x.x.label, x.x.low, x.x.high) == ("FaceXLoc [px], to the right", 0, 320)
     assert [(mark.at, mark.label) for mark in x.marks] == [(160, "neutral")]
     assert [(line.label, line.style, len(line.xs)) for line in x.lines] == [
-        ("Negative", 0, 321), ("Zero", 1, 321), ("Positive", 2, 321)
-    ]  # fmt: skip
+        ("Negative", 0, 321),
+        ("Zero", 1, 321),
+        ("Positive", 2, 321),
+    ]
     assert x.lines[0].ys[80] == pytest.approx(math.exp(-0.5))
     curve = sheet.panels[4].lines[0]
     assert curve.ys[80] == pytest.approx(head.evaluate({"FaceXLoc": 80, "FaceYLoc": 120})["AngleX"])
@@ -69,8 +71,12 @@ def test_a_sheet_shows_every_variable_and_every_answer(head: Controller) -> None
 def test_two_inputs_are_a_surface_and_three_are_slices() -> None:
     sheet = controller_sheet(Controller.from_dict(SEVERAL))
     titles = [panel.title for panel in sheet.panels]
-    assert titles[5:] == ["Two by A and B", "Three at B = 0.5, C = 0.5", "Three at A = 0.5, C = 0.5",
-                          "Three at A = 0.5, B = 0.5"]  # fmt: skip
+    assert titles[5:] == [
+        "Two by A and B",
+        "Three at B = 0.5, C = 0.5",
+        "Three at A = 0.5, C = 0.5",
+        "Three at A = 0.5, B = 0.5",
+    ]
     surface = sheet.panels[5].surface
     assert surface
     assert surface.zs[0][0] == pytest.approx(0.4, abs=0.01)

@@ -66,11 +66,15 @@ def test_roles_of_our_own_bodies_are_guessed_as_they_are(name: str) -> None:
 @pytest.mark.parametrize(
     "file",
     [
-        "locomotion/walkers/assets/humanoid_CMU_V2020.xml", "locomotion/walkers/assets/rodent.xml",
-        "suite/humanoid.xml", "suite/dog.xml", "suite/quadruped.xml", "third_party/kinova/jaco_arm.xml",
+        "locomotion/walkers/assets/humanoid_CMU_V2020.xml",
+        "locomotion/walkers/assets/rodent.xml",
+        "suite/humanoid.xml",
+        "suite/dog.xml",
+        "suite/quadruped.xml",
+        "third_party/kinova/jaco_arm.xml",
         "third_party/ant/ant.xml",
     ],
-)  # fmt: skip
+)
 def test_joints_stand_where_mujoco_has_them(file: str) -> None:
     """Places, axes and limits of every hinge agree with MuJoCo's, in models that others made."""
     path = DM_CONTROL / file
@@ -218,10 +222,11 @@ def test_a_urdf_that_mujoco_can_t_build_has_a_body_all_the_same(tmp_path: Path) 
 
 
 WHOLE = urdf(
-    joint("head_pan"), joint("left_wheel", kind="continuous", child="c", axis="0 1 0"),
+    joint("head_pan"),
+    joint("left_wheel", kind="continuous", child="c", axis="0 1 0"),
     '<link name="d"><visual><origin xyz="0 0 1" rpy="1 0 0"/><geometry><sphere radius="1"/></geometry></visual></link>',
     joint("r_knee", LIMIT + '<mimic joint="head_pan"/>', child="d"),
-)  # fmt: skip
+)
 WORDS = [
     b'"',
     b"<",

@@ -71,7 +71,7 @@ def greeted(show: Exhibition) -> None:
         ("avatar.NAO.command", {"type": "motion", "method": "moveto", "parameter": {"x": 10**400}}),
         ("avatar.NAO.command", {"type": 7}),
     ],
-)  # fmt: skip
+)
 def test_no_message_ends_it_or_switches_the_head_off(show: Exhibition, key: str, body: Any) -> None:
     greeted(show)
     with suppress(lumen.BusError):

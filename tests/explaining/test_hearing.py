@@ -76,7 +76,7 @@ def rows(machine: Machine, text: str, **context: Any) -> dict[str, HeardRow]:
         ("My name is Budi, dance", {"named": "taken", "dance": "better row"}),
         ("", {"dance": "not found", "else": "taken"}),
     ],
-)  # fmt: skip
+)
 def test_what_becomes_of_each_row(text: str, fates: dict[str, str]) -> None:
     found = rows(Machine.from_dict(chart()), text)
     assert {key: found[key].fate for key in fates} == fates
@@ -402,11 +402,15 @@ QUIZ: dict[str, Any] = {
     "states": {
         "quiz": {
             "for": {"each": "lists.questions", "as": "question"},
-            "states": {"ask": {"hears": {"question.right": "praise", "else": "wrong"}}, "praise": {}, "wrong": {},
-                       "over": {"type": "final"}},
+            "states": {
+                "ask": {"hears": {"question.right": "praise", "else": "wrong"}},
+                "praise": {},
+                "wrong": {},
+                "over": {"type": "final"},
+            },
         }
     },
-}  # fmt: skip
+}
 
 
 def test_phrases_of_a_lists_entry_are_found_and_proposed() -> None:

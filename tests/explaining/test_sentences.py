@@ -88,8 +88,12 @@ def test_nothing_is_taken_where_nothing_is_heard() -> None:
     assert explained(MACHINE, "bye", "dance", MACHINE.context).rows == ()
     assert explained(MACHINE, "bye", "dance", MACHINE.context).taken is None
     assert [state.path for state in hearing_states(MACHINE)] == [
-        "ask_name", "offer", "offer.choice", "offer.quiet", "quiz.ask",
-    ]  # fmt: skip
+        "ask_name",
+        "offer",
+        "offer.choice",
+        "offer.quiet",
+        "quiz.ask",
+    ]
     assert [row.key for row in rows_around(MACHINE, "offer.quiet")] == ["dance", "no|done", "else"]
 
 

@@ -42,9 +42,13 @@ WORDS = st.sampled_from(
     ["n", "x", "name", "list", "map", "a", "b", "none", "yes", "data", "result", "path", "q", "in", "true"]
 )
 LITERALS = st.one_of(
-    st.none(), st.booleans(), st.integers(-(2**63), 2**63 - 1), st.integers(-3, 3), st.text(max_size=5),
+    st.none(),
+    st.booleans(),
+    st.integers(-(2**63), 2**63 - 1),
+    st.integers(-3, 3),
+    st.text(max_size=5),
     st.floats(allow_nan=False, allow_infinity=False),
-).map(Literal)  # fmt: skip
+).map(Literal)
 ROOTS = st.sampled_from(["context", "event", "state"]).map(Identifier)
 PATHS = st.recursive(ROOTS, lambda base: st.builds(FieldAccess, base, WORDS), max_leaves=4)
 SIGNS = st.sampled_from(["==", "!=", "<", "<=", ">", ">=", "in", "+", "-", "*", "/", "%"])

@@ -56,11 +56,14 @@ def test_the_layered_centroid_is_the_centroid_of_the_sampled_set(
 @pytest.mark.slow
 @settings(deadline=None, max_examples=60)
 @given(
-    st.sampled_from(T_NORMS), st.sampled_from(S_NORMS), st.sampled_from(T_NORMS), st.sampled_from(S_NORMS),
+    st.sampled_from(T_NORMS),
+    st.sampled_from(S_NORMS),
+    st.sampled_from(T_NORMS),
+    st.sampled_from(S_NORMS),
     st.sampled_from(INTEGRAL_DEFUZZIFIERS),
     st.sampled_from(["general", "first", "last", "highest", "lowest", "proportional"]),
     st.lists(st.tuples(st.floats(0, 10), st.floats(0, 10)), min_size=1, max_size=5),
-)  # fmt: skip
+)
 def test_outputs_stay_in_range_and_a_batch_agrees(
     t: str, s: str, implication: str, aggregation: str, how: str, method: str, points: list[tuple[float, float]]
 ) -> None:

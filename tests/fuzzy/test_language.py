@@ -47,7 +47,10 @@ def test_the_shipped_table_says_what_each_variable_says_at_length() -> None:
     short, long = Controller.load("fuzzy/head.yaml"), Controller.load("tests/fuzzy/at_length.yaml")
     assert (short.inputs, short.outputs, short.rules) == (long.inputs, long.outputs, long.rules)
     assert (short.input_bindings, short.output_bindings, short.tracking) == (
-        long.input_bindings, long.output_bindings, long.tracking)  # fmt: skip
+        long.input_bindings,
+        long.output_bindings,
+        long.tracking,
+    )
 
 
 def test_the_shipped_controller_fits_on_one_screen() -> None:
@@ -64,8 +67,11 @@ def test_the_shipped_controller_fits_on_one_screen() -> None:
         ("Low: {a: [0, 3]", "Low: {a: [.nan, 3]", ["not-a-number .nan"]),
         ("  gaussian:\n    Low", "  gausian:\n    Low", ["unknown-key gausian"]),
         ("a: {range: [0, 10]}", "a: {range: [0, 10], terms: {Low: {ramp: [9, 2]}}}", ["two-shapes a"]),
-        ("    High: {a: [10, 3], c: [10, 3]}", "    High: {a: [10, 3], c: [10, 3]}\n  constant: {Mid: {c: 3}}",
-         ["term-without-set c"]),
+        (
+            "    High: {a: [10, 3], c: [10, 3]}",
+            "    High: {a: [10, 3], c: [10, 3]}\n  constant: {Mid: {c: 3}}",
+            ["term-without-set c"],
+        ),
         ("c + a * 2", "c + e * 2", ["unknown-name e"]),
         ("c + a * 2", "d + a", ["unknown-name d"]),
         ("c + a * 2", "sine(a)", ["unknown-function sine"]),
@@ -76,7 +82,7 @@ def test_the_shipped_controller_fits_on_one_screen() -> None:
         ("[0, 10], default: 0, defuzz", "[10, 0], default: 0, defuzz", ["empty-range [10, 0]"]),
         ("  c: {range", "  e: {range: [0, 10]}\n  c: {range", ["missing-key e"]),
     ],
-)  # fmt: skip
+)
 def test_a_fault_in_the_table_or_a_formula_is_shown_at_its_word(old: str, new: str, expected: list[str]) -> None:
     assert TABLE.count(old) == 1
     assert found(TABLE.replace(old, new)) == expected
@@ -90,8 +96,11 @@ def test_the_schema_s_own_examples_are_sound() -> None:
             weighted = kind in ("constant", "linear") or "inputX" in str(example)
             inputs = {"inputX": {"range": [0, 10]}, "b": {"range": [0, 1]}}
             output = {"range": [0, 10], "default": 0, "defuzzifier": "weighted-average" if weighted else "centroid"}
-            data = {"inputs": inputs, "outputs": {"c": {**output, "terms": {"t": {kind: example}}}},
-                    "rules": ["if inputX is any then c is t"]}  # fmt: skip
+            data = {
+                "inputs": inputs,
+                "outputs": {"c": {**output, "terms": {"t": {kind: example}}}},
+                "rules": ["if inputX is any then c is t"],
+            }
             Controller.from_dict(json.loads(json.dumps(data)))
 
 
@@ -140,8 +149,10 @@ def test_a_formula_is_the_same_on_numbers_and_arrays(text: str, points: list[tup
 
 def test_a_long_chain_of_signs_is_refused_not_crashed_on() -> None:
     with pytest.raises(ProjectError, match="levels"):
-        Controller.from_dict({
-            "inputs": {"a": {"range": [0, 1], "terms": {"t": {"function": "-" * 300 + "x"}}}},
-            "outputs": {"c": {"range": [0, 1], "terms": {"t": {"ramp": [0, 1]}}}},
-            "rules": ["if a is t then c is t"],
-        })  # fmt: skip
+        Controller.from_dict(
+            {
+                "inputs": {"a": {"range": [0, 1], "terms": {"t": {"function": "-" * 300 + "x"}}}},
+                "outputs": {"c": {"range": [0, 1], "terms": {"t": {"ramp": [0, 1]}}}},
+                "rules": ["if a is t then c is t"],
+            }
+        )

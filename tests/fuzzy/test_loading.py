@@ -78,7 +78,7 @@ CASES = [
     ("      Zero: {gaussian: [160, 50]}", "      very: {gaussian: [160, 50]}", "reserved-name", "very", "another name"),
     ("  AngleY:\n", "  FaceYLoc:\n", "duplicate-variable", "FaceYLoc", "rename one"),
     ("Zero: {gaussian: [160, 50]}", "Negative: {gaussian: [160, 50]}", "duplicate-key", "Negative", "line"),
-]  # fmt: skip
+]
 
 
 @for_each(("old", "new", "code", "word", "hint"), CASES, ids=[f"{c[2]}-{c[3]}" for c in CASES])

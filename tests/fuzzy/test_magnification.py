@@ -26,8 +26,9 @@ def asked(monkeypatch: pytest.MonkeyPatch) -> list[Mapping[str, float]]:
     """The inputs of all later calls of `Evaluator.evaluate`."""
     asked: list[Mapping[str, float]] = []
     evaluate = Evaluator.evaluate
-    monkeypatch.setattr(Evaluator, "evaluate", lambda self, inputs, *more: (
-        asked.append(inputs), evaluate(self, inputs, *more))[1])  # fmt: skip
+    monkeypatch.setattr(
+        Evaluator, "evaluate", lambda self, inputs, *more: (asked.append(inputs), evaluate(self, inputs, *more))[1]
+    )
     return asked
 
 

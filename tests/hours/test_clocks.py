@@ -189,10 +189,13 @@ def test_a_snapshot_goes_on_to_the_same_time_of_day(timers: Any) -> None:
     assert again.configuration == {"closed"}
 
 
-@pytest.mark.parametrize(("key", "value", "told"), [
-    ("timezone", "Mars/Olympus", "`timezone` there is no time zone `Mars/Olympus`"),
-    ("event", "at.12:00.open", "is not an `at` of `open`"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("key", "value", "told"),
+    [
+        ("timezone", "Mars/Olympus", "`timezone` there is no time zone `Mars/Olympus`"),
+        ("event", "at.12:00.open", "is not an `at` of `open`"),
+    ],
+)
 def test_a_damaged_snapshot_is_refused(key: str, value: str, told: str) -> None:
     it = Interpreter(Machine.from_dict(HALL), timezone="Europe/Berlin")
     it.start()

@@ -30,9 +30,8 @@ def test_a_failure_reads_as_the_condition_and_shows_its_variables() -> None:
 def test_a_condition_over_lines_reads_as_one() -> None:
     done = {"a": False}
     condition = lambda: [  # noqa: E731
-        name for name, state in done.items()
-        if state or name == "ö"
-    ]  # fmt: skip
+        name for name, state in done.items() if state or name == "ö"
+    ]
     assert source_of(condition) == '[ # noqa: E731 name for name, state in done.items() if state or name == "ö" ]'
 
 

@@ -107,9 +107,7 @@ def test_what_the_disk_refuses_is_told_and_keeps_its_position(disk: Disk, monkey
 def test_who_went_on_further_than_the_disk_is_led_back(disk: Disk) -> None:
     writer = begun(disk)
     assert writer.flush(HANG)
-    assert journal_page(writer, 10_000) == {
-        "entries": [], "next": writer.tail.next, "run": writer.run, "epoch": None
-    }  # fmt: skip
+    assert journal_page(writer, 10_000) == {"entries": [], "next": writer.tail.next, "run": writer.run, "epoch": None}
     assert journal_page(writer, -5)["entries"] == whole(writer)
     writer.close()
     assert begun_after(disk).tail.next == writer.tail.next + 1

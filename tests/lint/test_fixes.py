@@ -201,8 +201,9 @@ def test_fix_keeps_to_what_is_selected_and_named(project: Path, capsys: pytest.C
     assert main(["lint", str(project / TOUR), "--diff"]) == 1
 
 
-def test_a_folder_that_can_not_be_written_to(project: Path, capsys: pytest.CaptureFixture[str],
-                                             monkeypatch: pytest.MonkeyPatch) -> None:  # fmt: skip
+def test_a_folder_that_can_not_be_written_to(
+    project: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
     def refuse(*_: object, **__: object) -> tuple[int, str]:
         raise PermissionError(13, "Permission denied")
 

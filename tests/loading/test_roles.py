@@ -116,7 +116,7 @@ WRONG = {
         "13:20 incomplete-role add `sonar` with its range and cone",
     ),
     "no posture to stand in": (["  Stand:", "  Stood:"], "8:1 missing-key every robot needs `Stand`"),
-}  # fmt: skip
+}
 
 
 @for_each("what", WRONG)

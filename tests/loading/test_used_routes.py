@@ -82,10 +82,12 @@ def sound(given: dict[str, bytes]) -> Project:
         ("states: {idle: {do: {say: Hello}, onDone: idle, after: {3s: idle}}}\n", set()),
         (PUBLISHES % "visual_command", {"visual_command"}),
         ("states: {idle: {entry: {if: 'true', then: {publish: {route: trouble}}}}}\n", {"trouble"}),
-        ("states: {idle: {do: {parallel: [{publish: {route: text_stream}}, {publish: {route: fact}}]}}}\n",
-         {"text_stream", "fact"}),
+        (
+            "states: {idle: {do: {parallel: [{publish: {route: text_stream}}, {publish: {route: fact}}]}}}\n",
+            {"text_stream", "fact"},
+        ),
     ],
-)  # fmt: skip
+)
 def test_those_that_a_behaviour_uses_hold(behavior: str, found: set[str]) -> None:
     assert built_in(draft(files(behavior))) == found
 
@@ -109,7 +111,7 @@ def test_those_that_a_behaviour_uses_hold(behavior: str, found: set[str]) -> Non
         ("states: {idle: {buttons: [{label: Look, event: face}], on: {face: idle}}}\n", "", {}),
         (f"context: {{near: 0}}\n{HEARS}", "", {"mood": THRESHOLD}),
     ],
-)  # fmt: skip
+)
 def test_what_the_project_says_itself_wins(behavior: str, rows: str, more: dict[str, str]) -> None:
     assert built_in(draft(files(HEARS))) == {"face"}
     assert built_in(draft(files(behavior, rows, **more))) == set()

@@ -71,8 +71,11 @@ def test_lengths_are_metres_inside(project: Path) -> None:
 def test_a_mirror_reverses_what_goes_to_a_side_and_keeps_what_goes_up(project: Path) -> None:
     found = lumen.load(project)
     assert mirror_of(found.body) == {
-        "tilt": ("tilt", -1.0), "side": ("side", -1.0), "height": ("height", 1.0), "trunk": ("trunk", -1.0)
-    }  # fmt: skip
+        "tilt": ("tilt", -1.0),
+        "side": ("side", -1.0),
+        "height": ("height", 1.0),
+        "trunk": ("trunk", -1.0),
+    }
     right = {joint: keys[1].angle for joint, keys in found.motions["lean"].tracks.items()}
     assert right == pytest.approx({"side": -0.01, "height": 0.012, "tilt": radians(20), "trunk": radians(-30)})
 

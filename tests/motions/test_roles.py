@@ -58,9 +58,11 @@ def motion(text: str, body: Body) -> tuple[MotionDefinition, list[str]]:
 
 def test_roles_are_nao_s_joints() -> None:
     by_name = made(
-        SHARED.replace("roles", "joints").replace("head.yaw", "HeadYaw").replace("head.pitch", "HeadPitch")
+        SHARED.replace("roles", "joints")
+        .replace("head.yaw", "HeadYaw")
+        .replace("head.pitch", "HeadPitch")
         .replace("arms.left.shoulder-pitch", "LShoulderPitch")
-    )  # fmt: skip
+    )
     assert motion(SHARED, nao()) == (replace(by_name, name="shared"), [])
 
 
@@ -99,8 +101,11 @@ def test_handles_and_trails_take_roles() -> None:
 def test_a_mirror_knows_roles_and_drops_what_has_no_other_side() -> None:
     mirror = mirror_of(GREETER)
     assert mirror == {
-        "Turn": ("Turn", -1.0), "Lift": ("Grow", 1.0), "Grow": ("Lift", 1.0), "Raise": ("", 1.0),
-    }  # fmt: skip
+        "Turn": ("Turn", -1.0),
+        "Lift": ("Grow", 1.0),
+        "Grow": ("Lift", 1.0),
+        "Raise": ("", 1.0),
+    }
     found, _ = motion("mirror: true\nkeyframes:\n  - {at: 1s, joints: {Turn: 0.5, Raise: 0.2}}\n", GREETER)
     assert {joint: keys[0].angle for joint, keys in found.tracks.items() if keys[0].time == 1.0} == {"Turn": -0.5}
 

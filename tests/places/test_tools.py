@@ -100,8 +100,10 @@ def test_what_changes_of_places_is_told() -> None:
     assert before
     assert after
     assert [change.sentence for change in changes(before, after)] == [
-        "place `organ` changed", "place `clock` removed", "place `globe` added",
-    ]  # fmt: skip
+        "place `organ` changed",
+        "place `clock` removed",
+        "place `globe` added",
+    ]
 
 
 def test_the_editor_completes_places_and_finds_where_they_stand() -> None:

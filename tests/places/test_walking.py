@@ -78,11 +78,14 @@ def test_it_walks_to_places_one_after_another_and_says_when_it_is_there() -> Non
 def test_where_it_goes_may_be_computed_and_where_it_is_be_asked() -> None:
     guide = Guide(
         {
-            "a": {"entry": {"assign": {"next": "'or' + 'gan'"}}, "do": {"walk": {"to": "{{ context.next }}"}},
-                  "on": {"arrived": {"guard": "state.place == 'organ'", "target": "b"}}},
+            "a": {
+                "entry": {"assign": {"next": "'or' + 'gan'"}},
+                "do": {"walk": {"to": "{{ context.next }}"}},
+                "on": {"arrived": {"guard": "state.place == 'organ'", "target": "b"}},
+            },
             "b": {"entry": {"assign": {"was": "state.place"}}},
         }
-    )  # fmt: skip
+    )
     guide.live(20.0)
     assert guide.states == {"b"}
     assert guide.loop.runtime.snapshot.context["was"] == "organ"

@@ -263,8 +263,10 @@ def test_every_end_is_told_once_and_as_it_was(line: Line) -> None:
     line.report("d3", "cancelled")
     found = {event.name: event.data for event in line.live(0.1)}
     assert found == {
-        "done.command.d1": None, "error.command.d2": {"reason": "hoarse"}, "cancelled.command.d3": None,
-    }  # fmt: skip
+        "done.command.d1": None,
+        "error.command.d2": {"reason": "hoarse"},
+        "cancelled.command.d3": None,
+    }
 
 
 def test_what_comes_after_a_stop_waits_for_it_and_what_came_before_is_called_off(line: Line) -> None:
@@ -286,8 +288,9 @@ def test_a_robot_that_is_lost_has_lost_what_it_did(line: Line) -> None:
     line.robot.start("c2", Rest())
     line.robot.lose("gone")
     assert [(e.name, e.data) for e in line.live(0.1)] == [
-        ("lost.command.d1", {"reason": "gone"}), ("lost.command.c2", {"reason": "gone"}),
-    ]  # fmt: skip
+        ("lost.command.d1", {"reason": "gone"}),
+        ("lost.command.c2", {"reason": "gone"}),
+    ]
 
 
 def test_commands_of_the_brain_before_are_answered_as_our_own(line: Line) -> None:

@@ -79,8 +79,11 @@ def test_a_renamed_state_is_the_same_state() -> None:
 
 
 def test_a_renamed_state_takes_those_within_along() -> None:
-    data = {**TOUR, "renamed": {"talk": "chat"}, "states": {
-        "idle": {"on": {"face": "chat"}}, "chat": TOUR["states"]["talk"]}}  # fmt: skip
+    data = {
+        **TOUR,
+        "renamed": {"talk": "chat"},
+        "states": {"idle": {"on": {"face": "chat"}}, "chat": TOUR["states"]["talk"]},
+    }
     assert active(planned(ASKING, data)) == {"chat", "chat.ask"}
     assert active(planned(DANCING, data)) == {"chat", "chat.dance"}
 

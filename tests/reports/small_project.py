@@ -8,10 +8,10 @@ from tests import ROOT
 MINIMAL = ROOT / "examples/minimal"
 TOUR, WAVE = "behaviors/tour.yaml", "motions/wave.yaml"
 BASE = {
-    "lumen.yaml": read_files(MINIMAL)["lumen.yaml"].replace(b"behavior: hello", b"behavior: tour").replace(
-        b"story: visitor", b"# no story"
-    ),
-}  # fmt: skip
+    "lumen.yaml": read_files(MINIMAL)["lumen.yaml"]
+    .replace(b"behavior: hello", b"behavior: tour")
+    .replace(b"story: visitor", b"# no story"),
+}
 
 STATES = """
 states:

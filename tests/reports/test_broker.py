@@ -289,8 +289,10 @@ def test_a_refusal_names_the_content_type_and_the_encoding(broker: RabbitMQ) -> 
         mine = channel.queue_declare("", exclusive=True).method.queue
         answers = []
         for data, kind, encoding in (
-            (BODY.encode(), TEXT, ""), (b"\xef\xbb\xbf" + BODY.encode(), JSON, ""), (gzip.compress(b"{}"), JSON, "gzip")
-        ):  # fmt: skip
+            (BODY.encode(), TEXT, ""),
+            (b"\xef\xbb\xbf" + BODY.encode(), JSON, ""),
+            (gzip.compress(b"{}"), JSON, "gzip"),
+        ):
             said = pika.BasicProperties(reply_to=mine, content_type=kind, content_encoding=encoding or None)
             channel.basic_publish("amq.topic", key, data, said)
             answers.append(next(channel.consume(mine, auto_ack=True))[2].decode())

@@ -43,17 +43,17 @@ def test_a_star_above_the_end_is_found() -> None:
     [
         ('{on: {"*": b}, do: {say: Hi}, onDone: c}', True),
         ('{do: {say: Hi}, onDone: c, on: {"*": b}}', False),
-        ('{on: {done: b}, do: {say: Hi}, onDone: c}', True),
-        ('{on: {error.*: b}, do: {say: Hi}, onDone: c}', False),
-        ('{on: {error.*: b}, do: {say: Hi}, onDone: c, onError: c}', True),
+        ("{on: {done: b}, do: {say: Hi}, onDone: c}", True),
+        ("{on: {error.*: b}, do: {say: Hi}, onDone: c}", False),
+        ("{on: {error.*: b}, do: {say: Hi}, onDone: c, onError: c}", True),
         ('{on: {"*": b}, initial: x, states: {x: {type: final}}, onDone: c}', True),
         ('{on: {"*": b}, invoke: {behavior: quick, onDone: c}}', True),
         ('{on: {"*": {guard: "event.name != \'done.do.a\'", target: b}}, do: {say: Hi}, onDone: c}', False),
         ('{on: {"*": b}, do: {say: Hi}, after: {5s: c}}', False),  # a timer is selected by no name
-        ('{on: {after.5s.a: b}, after: {5s: c}}', False),
+        ("{on: {after.5s.a: b}, after: {5s: c}}", False),
         ('{initial: invoke, states: {invoke: {on: {"*": "#c"}, do: {say: H}, onDone: x}, x: {on: {e: "#c"}}}}', True),
     ],
-)  # fmt: skip
+)
 def test_an_end_below_a_key_that_handles_it(state: str, found: bool) -> None:
     chart = f"initial: a\nstates:\n  a: {state}\n  b: {{after: {{5s: a}}}}\n  c: {{id: c, after: {{5s: a}}}}\n"
     codes = [line.split()[1] for line in lint(chart, quick=of("quick.yaml"))]
@@ -217,12 +217,12 @@ def test_a_target_in_another_region_is_found() -> None:
 @for_each(
     ("way", "found"),
     [
-        ('l: {initial: a, states: {a: {on: {touched: b}}, b: {after: {5s: a}}}}', False),
+        ("l: {initial: a, states: {a: {on: {touched: b}}, b: {after: {5s: a}}}}", False),
         ('l: {initial: a, states: {a: {on: {touched: {target: ["#b", "#r2"]}}}, b: {id: b, after: {5s: a}}}}', False),
         ('l: {initial: a, states: {a: {on: {touched: "#r2"}}}}', True),
         ('l: {initial: a, on: {touched: "#r2"}, states: {a: {}}}', True),
     ],
-)  # fmt: skip
+)
 def test_which_targets_leave_other_regions(way: str, found: bool) -> None:
     right = "r: {initial: r1, states: {r1: {after: {5s: r2}}, r2: {id: r2, after: {5s: r1}}}}"
     codes = [line.split()[1] for line in lint(f"type: parallel\nstates:\n  {way}\n  {right}\n")]
@@ -259,11 +259,11 @@ def test_keys_beside_an_instant_always_are_found(state: str, found: str) -> None
     [
         ('x: {on: {"*": y}}, y: {on: {"*": x}}', True),
         ('x: {on: {"*": y}}, y: {on: {touched: x}}', False),
-        ('x: {on: {done: y}}, y: {initial: z, on: {done.invoke: x}, states: {z: {}}}', True),
+        ("x: {on: {done: y}}, y: {initial: z, on: {done.invoke: x}, states: {z: {}}}", True),
         ('x: {on: {"*": {guard: "event.name != \'e\'", target: y}}}, y: {on: {"*": x}}', False),
-        ('x: {on: {touched: y}}, y: {type: final}', False),
+        ("x: {on: {touched: y}}, y: {type: final}", False),
     ],
-)  # fmt: skip
+)
 def test_the_end_of_an_invocation_that_inner_states_handle(within: str, found: bool) -> None:
     chart = (
         f"initial: a\nstates:\n  a: {{invoke: {{behavior: quick, onDone: b}}, initial: x, states: {{{within}}}}}\n"

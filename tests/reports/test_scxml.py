@@ -78,10 +78,12 @@ def test_done_events_follow_a_renamed_id() -> None:
 
 
 def test_ids_that_only_clash_after_renaming_stay_two() -> None:
-    data, _ = body('<state id="a#1"><transition event="e" target="a_1"/></state><state id="a_1">'
-                   '<transition event="e" cond="!In(\'a#1\') &amp;&amp; In(\'a_1\')" target="a*1"/></state>'
-                   '<state id="a*1"><transition event="done.state.a*1" cond="_event.name == \'done.state.a*1\'"'
-                   ' target="a#1"/><final id="z"/></state>')  # fmt: skip
+    data, _ = body(
+        '<state id="a#1"><transition event="e" target="a_1"/></state><state id="a_1">'
+        '<transition event="e" cond="!In(\'a#1\') &amp;&amp; In(\'a_1\')" target="a*1"/></state>'
+        '<state id="a*1"><transition event="done.state.a*1" cond="_event.name == \'done.state.a*1\'"'
+        ' target="a#1"/><final id="z"/></state>'
+    )
     it = Interpreter(Machine.from_dict(data))
     seen = [it.start(), it.send("e"), it.send("e")]
     assert [set(step.snapshot.configuration) - {""} for step in seen] == [{"a_1_2"}, {"a_1"}, {"a_1_2"}]
@@ -173,11 +175,13 @@ def test_a_chart_that_is_invoked_twice_has_two_ids() -> None:
     ("attributes", "found"),
     [
         ('version="1.0" datamodel="ecmascript"', []),
-        ('version="2.0"', ["1:48 version `2.0` is read as 1.0 (write \"1.0\", the only version)"]),
-        ('datamodel="null"',
-         ["1:48 the data model `null` does not allow `<data>`: it is read as ECMAScript (write \"ecmascript\")"]),
+        ('version="2.0"', ['1:48 version `2.0` is read as 1.0 (write "1.0", the only version)']),
+        (
+            'datamodel="null"',
+            ['1:48 the data model `null` does not allow `<data>`: it is read as ECMAScript (write "ecmascript")'],
+        ),
     ],
-)  # fmt: skip
+)
 def test_attributes_of_the_whole_document(attributes: str, found: list[str]) -> None:
     text = f'<scxml xmlns="http://www.w3.org/2005/07/scxml" {attributes}>'
     text += '<datamodel><data id="n" expr="1"/></datamodel><state id="a"/></scxml>'

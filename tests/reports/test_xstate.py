@@ -66,15 +66,17 @@ def test_sends_of_version_4_are_carried_over() -> None:
     [
         ({"type": "xstate.raise", "event": "E"}, {"raise": "E"}),
         ({"type": "xstate.raise", "event": {"type": "E", "by": 1}}, {"raise": {"event": "E", "data": {"by": 1}}}),
-        ({"type": "xstate.raise", "params": {"event": {"type": "E"}, "delay": 5}},
-         {"send": {"event": "E", "delay": "5ms"}}),
+        (
+            {"type": "xstate.raise", "params": {"event": {"type": "E"}, "delay": 5}},
+            {"send": {"event": "E", "delay": "5ms"}},
+        ),
         ({"type": "xstate.send", "event": {"type": "E"}}, {"send": "E"}),
         ({"type": "xstate.send", "event": {"type": "E"}, "to": "#_parent"}, {"send": {"event": "E", "to": "parent"}}),
         ({"type": "xstate.cancel", "sendId": "x"}, {"cancel": "x"}),
         ({"type": "xstate.log", "label": "at", "expr": 3}, {"log": "at: 3"}),
         ({"type": "xstate.assign", "assignment": {"n": 2, "t": "two"}}, {"assign": {"n": 2, "t": "'two'"}}),
     ],
-)  # fmt: skip
+)
 def test_actions_of_xstate_itself(action: dict[str, Any], ours: dict[str, Any]) -> None:
     chart = {"context": {"n": 0, "t": ""}, "states": {"a": {"entry": action, "on": {"E": {}}}}}
     data, found = xstate(chart)
@@ -171,8 +173,11 @@ def test_names_that_only_clash_after_cleaning_stay_two() -> None:
         "b": {"id": "x y"}, "c": {"id": "x_y"}}}  # fmt: skip
     data, _ = xstate(chart)
     assert data["states"]["a"]["on"] == {
-        "say_it_2": "b", "say_it": "c", "done.invoke.my_clock_2": "b", "done.invoke.my_clock": "c",
-    }  # fmt: skip
+        "say_it_2": "b",
+        "say_it": "c",
+        "done.invoke.my_clock_2": "b",
+        "done.invoke.my_clock": "c",
+    }
     assert data["states"]["a"]["entry"] == [{"raise": "say_it_2"}]
     assert [data["states"][key]["id"] for key in "bc"] == ["x_y_2", "x_y"]
 

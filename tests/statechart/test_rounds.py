@@ -73,8 +73,10 @@ def test_three_of_ten_questions_are_asked_in_the_visitor_s_language_and_counted(
 
 
 def test_the_order_is_drawn_from_the_seed_and_another_in_the_next_round() -> None:
-    rounds = [[v.plays(lambda entry: True), v.robot.clock.wait(99), v.plays(lambda entry: True)] for v in (
-        Visitor(quiz(most=10), "en", seed=1), Visitor(quiz(most=10), "en", seed=1))]  # fmt: skip
+    rounds = [
+        [v.plays(lambda entry: True), v.robot.clock.wait(99), v.plays(lambda entry: True)]
+        for v in (Visitor(quiz(most=10), "en", seed=1), Visitor(quiz(most=10), "en", seed=1))
+    ]
     assert rounds[0] == rounds[1]
     assert rounds[0][0] != rounds[0][2]
     assert sorted(rounds[0][0]) == list(range(10))

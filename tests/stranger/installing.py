@@ -66,8 +66,11 @@ def install(sources: Path, folder: Path) -> Path:
     options = "--quiet", "--no-deps", "--no-index", "--no-build-isolation", "--disable-pip-version-check"
     run_guarded(
         [sys.executable, "-m", "pip", "install", *options, "--target", folder, sources],
-        check=True, timeout=HANG, capture_output=True, text=True,
-    )  # fmt: skip
+        check=True,
+        timeout=HANG,
+        capture_output=True,
+        text=True,
+    )
     return folder
 
 

@@ -281,7 +281,7 @@ SETTINGS = (
         ("report.diagnostics = None; return Hall(2)", "TypeError: `faulty_code:read` reported None, which"),
         ("1 / 0", "ZeroDivisionError: division by zero"),
     ],
-)  # fmt: skip
+)
 def test_lint_and_run_report_once_that_a_section_cannot_be_read(
     code: str, fault: str, installed: Installed, hall: Path, capsys: pytest.CaptureFixture[str],
     monkeypatch: pytest.MonkeyPatch,

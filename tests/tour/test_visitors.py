@@ -65,8 +65,10 @@ def test_another_trouble_during_the_first_is_not_forgotten_by_the_guide(project:
 def test_a_robot_with_its_motors_off_does_not_get_up_by_itself(project: Project, state: str) -> None:
     """It notes `fallen`, and nothing moves until a hand holds its head."""
     begin: dict[str, VisitorAction] = {
-        "stopped": Happen("stop"), "resting": Happen("head.held"), "helpless": Happen("fallen"),
-    }  # fmt: skip
+        "stopped": Happen("stop"),
+        "resting": Happen("head.held"),
+        "helpless": Happen("fallen"),
+    }
     robot = {"posture": "fails"} if state == "helpless" else {}
     deeds: list[VisitorAction] = [
         StoryPause(1.0),

@@ -64,9 +64,11 @@ def _visits(new: Version) -> ReplayReport:
 def _fates(old: Version, new: Version, bound: int) -> MigrationPreview:
     with progress(at_most=True) as tell:
         return preview(
-            old.project, live(old.project, new.project), bound,
+            old.project,
+            live(old.project, new.project),
+            bound,
             lambda walked, waiting: tell(walked, bound, f"configurations, {waiting:,} more to explore"),
-        )  # fmt: skip
+        )
 
 
 def _text(

@@ -174,9 +174,12 @@ def _explore(project: Project, options: argparse.Namespace) -> Explored:
         return known
     with progress(at_most=True) as tell:
         found = explored(
-            project, behavior, bound=options.bound, home=home,
+            project,
+            behavior,
+            bound=options.bound,
+            home=home,
             tell=lambda walked, waiting: tell(walked, options.bound, f"configurations explored, {waiting:,} waiting"),
-        )  # fmt: skip
+        )
     memory.keep(found, options.bound, home)
     return found
 

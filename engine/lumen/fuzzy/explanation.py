@@ -54,10 +54,11 @@ def explain(
     }
     rules = tuple((rule, float(tape[slot])) for rule, slot in zip(controller.rules, program.rules, strict=True))
     outputs = {
-        name: _concluded(variable, [(c.term, float(tape[c.slot]), c.implication) for c in program.conclusions[name]],
-                         values[name])
+        name: _concluded(
+            variable, [(c.term, float(tape[c.slot]), c.implication) for c in program.conclusions[name]], values[name]
+        )
         for name, variable in controller.outputs.items()
-    }  # fmt: skip
+    }
     return Explanation(dict(inputs), memberships, rules, outputs)
 
 

@@ -66,10 +66,13 @@ def _trend(controller: ControllerDefinition, variable: Variable, output: Variabl
         (asked[rule.antecedent.term], said[consequent.term])
         for rule in controller.rules
         for consequent in rule.consequents
-        if isinstance(rule.antecedent, Proposition) and rule.antecedent.variable == variable.name
-        and not (rule.antecedent.hedges or consequent.hedges) and consequent.variable == output.name
-        and rule.antecedent.term in asked and consequent.term in said
-    ]  # fmt: skip
+        if isinstance(rule.antecedent, Proposition)
+        and rule.antecedent.variable == variable.name
+        and not (rule.antecedent.hedges or consequent.hedges)
+        and consequent.variable == output.name
+        and rule.antecedent.term in asked
+        and consequent.term in said
+    ]
     if len(pairs) < 2:
         return 0
     middle = [sum(column) / len(pairs) for column in zip(*pairs, strict=True)]

@@ -29,9 +29,10 @@ def with_language(draft: ProjectDraft, files: Mapping[str, bytes], language: str
     if list(main.document.find(("languages",))) == [source]:
         for report, path in plain_texts(draft):
             text, said = FileText(report.document.file, files[report.document.file]), report.document.find(path)
-            both = ", ".join(f"{name}: {json.dumps(words, ensure_ascii=False)}" for name, words in (
-                (source, said), (language, _to_do(said))
-            ))  # fmt: skip
+            both = ", ".join(
+                f"{name}: {json.dumps(words, ensure_ascii=False)}"
+                for name, words in ((source, said), (language, _to_do(said)))
+            )
             edits.setdefault(text.file, []).append(Edit(report.document.place(path), f"{{{both}}}"))
     text = FileText(main.document.file, files[main.document.file])
     spoken = main.document.find(("languages",))

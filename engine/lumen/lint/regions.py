@@ -9,9 +9,11 @@ from lumen.project.document_report import DocumentReport
 from lumen.project.draft import ProjectDraft
 
 CROSSES_REGIONS = Code(
-    "crosses-regions", "statecharts", WARNING,
+    "crosses-regions",
+    "statecharts",
+    WARNING,
     "a transition leads into another region, so all regions are left and restarted",
-)  # fmt: skip
+)
 
 MAX_SHOWN_REGIONS = 6
 """The maximum number of regions that the hint names."""

@@ -102,9 +102,12 @@ class Questions:
         retriever = self._passages(project, asked.language)
         if found := retriever.answer(asked.question, self._weights):
             said = {
-                "text": found.text, "language": found.language, "source": "passage", "passage": found.passage.name,
+                "text": found.text,
+                "language": found.language,
+                "source": "passage",
+                "passage": found.passage.name,
                 "confidence": round(found.probability, 3),
-            }  # fmt: skip
+            }
             return [Event(f"answer.command.{id}", said, now)]
         if ANSWERS not in project.modules:
             return [_unanswered(id, now, NOBODY)]

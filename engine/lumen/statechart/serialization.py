@@ -76,9 +76,11 @@ def retimed(snapshot: Snapshot, now: float, timing: TimerPolicy) -> Snapshot:
         case "restart":
             later = nanoseconds(now) - nanoseconds(snapshot.at)
             return _shifted(
-                snapshot, now, now - snapshot.at,
+                snapshot,
+                now,
+                now - snapshot.at,
                 lambda t: t.due_ns + later if t.kind == "at" else nanoseconds(now) + t.delay_ns,
-            )  # fmt: skip
+            )
 
 
 def paused(snapshot: Snapshot, away: float) -> Snapshot:

@@ -31,8 +31,11 @@ def start() -> Iterator[Callable[..., Guarded[str]]]:
             process = Guarded(
                 [sys.executable, "-m", "lumen", "run", folder, "--robot", "recording", *words],
                 env={**os.environ, **({"LUMEN_BUS": url} if url else {})},
-                text=True, stdin=DEVNULL, stdout=DEVNULL, stderr=DEVNULL,
-            )  # fmt: skip
+                text=True,
+                stdin=DEVNULL,
+                stdout=DEVNULL,
+                stderr=DEVNULL,
+            )
             stack.callback(process.wait)
             stack.callback(process.kill)
             return process

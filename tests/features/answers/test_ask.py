@@ -166,7 +166,7 @@ def test_nobody_answers_another_command_so() -> None:
         ("^start(animations/Hey_1) Hello \\rspd=50\\ you", "start(animations/Hey 1) Hello rspd=50 you"),
         ("<say-as>one</say-as>\u0000\n two", "say-as one /say-as two"),
     ],
-)  # fmt: skip
+)
 def test_an_answer_is_data(text: str, spoken: str) -> None:
     talk = Talk()
     talk.hear("answer.command.d1", {"text": text})

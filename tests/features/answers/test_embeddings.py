@@ -73,8 +73,11 @@ def test_other_words_of_the_same_meaning_find_the_passage(asking: Any) -> None:
     desk = asking(meaning)
     (said,) = desk.ask("sing me a tune")
     assert {key: said[key] for key in ("text", "source", "passage", "language")} == {
-        "text": "I know one.", "source": "passage", "passage": "songs", "language": "en",
-    }  # fmt: skip
+        "text": "I know one.",
+        "source": "passage",
+        "passage": "songs",
+        "language": "en",
+    }
     assert desk.ask("show me the way out") == []
     assert not desk.told
 

@@ -86,10 +86,13 @@ def test_only_json_objects_of_some_size_are_taken(open_to_all: Browser) -> None:
 @pytest.mark.parametrize(
     "body",
     [
-        {"command": "rest"}, {"id": "a b", "command": "rest", "robot": "NAO"}, {"id": "1", "command": "explode"},
-        {"id": "1", "command": ["rest"]}, {"id": 1, "command": "say", "robot": "NAO", "text": "x"},
+        {"command": "rest"},
+        {"id": "a b", "command": "rest", "robot": "NAO"},
+        {"id": "1", "command": "explode"},
+        {"id": "1", "command": ["rest"]},
+        {"id": 1, "command": "say", "robot": "NAO", "text": "x"},
     ],
-)  # fmt: skip
+)
 def test_what_is_wrong_with_a_command_is_said_in_a_sentence(open_to_all: Browser, body: object) -> None:
     answer = open_to_all.post("/api/commands", body)
     assert answer.status == 400

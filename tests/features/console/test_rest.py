@@ -26,7 +26,7 @@ from tests.features.console.troubles import (
     Happening,
     Trouble,
     drawn,
-)  # fmt: skip
+)
 from tests.waiting import HANG, until
 
 SEED = int(os.environ.get("LUMEN_SEED", "18"))

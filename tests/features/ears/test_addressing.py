@@ -75,8 +75,12 @@ def test_says_whether_it_listens_and_why(ear: Ear) -> None:
     ear.send(105.0, FACE, NEAR)
     ear.send(120.0, FACE, {**NEAR, "distance": 3.0})
     assert [(body["listening"], body["because"]) for body in shown.bodies] == [
-        (True, "face"), (True, "touch"), (False, "speaks"), (True, "touch"), (False, "nobody"),
-    ]  # fmt: skip
+        (True, "face"),
+        (True, "touch"),
+        (False, "speaks"),
+        (True, "touch"),
+        (False, "nobody"),
+    ]
 
 
 def test_closes_by_itself(stand: Make) -> None:

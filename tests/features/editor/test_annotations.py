@@ -42,8 +42,10 @@ def test_lenses_of_states_count_the_transitions_that_lead_there() -> None:
 def test_active_states_are_marked() -> None:
     marked = [each for each in lenses(SHIPPED, TOUR, ("talking", "fine", "watching")) if each.title == ACTIVE_NOW]
     assert [each.place.line for each in marked] == [
-        line_of(TOUR, "      talking:"), line_of(TOUR, "              fine:"), line_of(TOUR, "      watching:"),
-    ]  # fmt: skip
+        line_of(TOUR, "      talking:"),
+        line_of(TOUR, "              fine:"),
+        line_of(TOUR, "      watching:"),
+    ]
     assert [place.line for place in active_places(SHIPPED, ("fine",))] == [line_of(TOUR, "              fine:")]
     assert active_places(SHIPPED, ()) == []
 

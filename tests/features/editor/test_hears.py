@@ -163,10 +163,10 @@ def test_a_words_file_of_the_project_replaces_lumens_own() -> None:
     [
         (T, "      dan¦ce: dance", ["**hears dance**: taken if one of its phrases is said", "- “dance”", "id: menari"]),
         (T, "not  dan¦ce | sing", ["**hears not dance|sing**: taken if the visitor refuses it", "phrase `dance`"]),
-        (T, "tour¦_of:", ["- “show me the rex”: `heard.exhibits` is {\"id\": \"rex\"", "- en: (show|take) me [to] {"]),
-        (T, "my_¦name:", ["taken if one of its phrases is said", "`heard.name` is \"Budi\"", "phrase `my_name`"]),
+        (T, "tour¦_of:", ['- “show me the rex”: `heard.exhibits` is {"id": "rex"', "- en: (show|take) me [to] {"]),
+        (T, "my_¦name:", ["taken if one of its phrases is said", '`heard.name` is "Budi"', "phrase `my_name`"]),
         (T, "my_¦name:", ["It comes with Lumen. To replace it, define it in a file in behaviors/words/"]),
-        (T, "      fa¦q:", ["- “how tall”: `heard.answer` is \"57 cm\"", "answers table `faq`"]),
+        (T, "      fa¦q:", ['- “how tall”: `heard.answer` is "57 cm"', "answers table `faq`"]),
         (
             T,
             "el¦se: .",
@@ -179,7 +179,7 @@ def test_a_words_file_of_the_project_replaces_lumens_own() -> None:
         (W, "any¦how: true", ["Whether the phrases count in `hears` even if they are negated"]),
         (T, "he¦ars:\n      dance", ["What the robot reacts to in what a visitor says"]),
     ],
-)  # fmt: skip
+)
 def test_hover(file: str, text: str, said: list[str]) -> None:
     shown = hover(PROJECT, *place(PROJECT, file, text))
     assert [sentence for sentence in said if sentence not in shown] == [], shown

@@ -110,8 +110,10 @@ def test_rename_of_a_motion_moves_its_file(client: Client) -> None:
     assert client.uri(TOUR) in edited
     assert client.uri("behaviors/stories/visitor.yaml") in edited
     assert changes[-1] == {
-        "kind": "rename", "oldUri": client.uri("motions/dance.yaml"), "newUri": client.uri("motions/horse.yaml"),
-    }  # fmt: skip
+        "kind": "rename",
+        "oldUri": client.uri("motions/dance.yaml"),
+        "newUri": client.uri("motions/horse.yaml"),
+    }
     refused = client.ask("rename", TOUR, line, character, newName="sing")
     assert "there is already a motion `sing`" in refused["message"]
     assert client.ask("prepareRename", TOUR, *at(text, "# What the ro|bot remembers")) is None

@@ -90,7 +90,7 @@ def written(file: str, old: str, new: str) -> tuple[Analysis, tuple[str, int, in
         ("fuzzy/head.yaml", "joint: head.yaw", "joint: |", ["HeadPitch"], ["face"]),
         ("fuzzy/head.yaml", "implication: minimum", "implication: |", ["algebraic-product"], ["HeadYaw"]),
     ],
-)  # fmt: skip
+)
 def test_completion(file: str, old: str, new: str, some: list[str], none: list[str]) -> None:
     """A file that is not YAML while it is being written is completed, too."""
     analysis, here = written(file, old, new)

@@ -51,8 +51,10 @@ class FleetBrokers:
         machine = self._folder / name
         done = run_guarded(
             ["sh", "-e", "-c", commands.replace(FOLDER, str(machine))],
-            env={"PATH": f"{machine}:{os.environ['PATH']}"}, capture_output=True, text=True,
-        )  # fmt: skip
+            env={"PATH": f"{machine}:{os.environ['PATH']}"},
+            capture_output=True,
+            text=True,
+        )
         assert done.returncode == 0, f"{name}: {done.stdout}{done.stderr}"
         return str(done.stdout)
 

@@ -47,9 +47,13 @@ def test_a_centre_that_is_killed_at_any_moment_counts_each_incident_once(tmp_pat
 def test_what_a_robot_has_counted_is_its_last_word_and_not_added_up(tmp_path: Path) -> None:
     log = log_in(tmp_path)
     for offset, entry in enumerate(
-        [numbers(0, "nao1", 1.0, 0.0), numbers(1, "nao1", 2.0, 1.0), numbers(2, "nao2", 2.0, 3.0),
-         numbers(3, "nao1", 4.0, 0.0, since=9.0)]
-    ):  # fmt: skip
+        [
+            numbers(0, "nao1", 1.0, 0.0),
+            numbers(1, "nao1", 2.0, 1.0),
+            numbers(2, "nao2", 2.0, 3.0),
+            numbers(3, "nao1", 4.0, 0.0, since=9.0),
+        ]
+    ):
         log.take(entry._replace(offset=offset), NOW)
     log.save(now=True)
     (row,) = log_in(tmp_path).numbers(MEASURES)

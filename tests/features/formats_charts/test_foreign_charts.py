@@ -115,7 +115,7 @@ STRANGERS: dict[str, tuple[dict[str, Any], list[str]]] = {
         },
         ["E"],
     ),
-}  # fmt: skip
+}
 
 
 def read(chart: dict[str, Any]) -> tuple[dict[str, Any], list[Any]]:
@@ -153,11 +153,14 @@ def test_a_history_is_no_loss() -> None:
 def test_what_an_actor_did_is_told_and_its_end_waited_for() -> None:
     data, said = read(LOADING)
     assert data["states"]["busy"]["on"] == {
-        "CANCEL": "idle", "done.invoke.0.loader.busy": "shown", "error.invoke.0.loader.busy": "failed",
-    }  # fmt: skip
+        "CANCEL": "idle",
+        "done.invoke.0.loader.busy": "shown",
+        "error.invoke.0.loader.busy": "failed",
+    }
     assert [d.message for d in said] == [
-        "`invoke` of `fetchAll`: its code is not in the file", "`invoke` of `watcher`: its code is not in the file",
-    ]  # fmt: skip
+        "`invoke` of `fetchAll`: its code is not in the file",
+        "`invoke` of `watcher`: its code is not in the file",
+    ]
     assert all("invoke a behaviour with the id `" in d.hint for d in said)
     assert all(d.place.line for d in said)
     assert has_errors(said)

@@ -122,12 +122,15 @@ def test_xstate_asks_for_a_guard_of_that_name() -> None:
 @for_each(
     ("old", "new", "lost"),
     [
-        ('lumen:hears="dance" cond="hears(', 'lumen:hears="dance" cond="listens(',
-         "the condition of a row of `hears` must begin with `hears(_event.data.result, 'dance')`"),
+        (
+            'lumen:hears="dance" cond="hears(',
+            'lumen:hears="dance" cond="listens(',
+            "the condition of a row of `hears` must begin with `hears(_event.data.result, 'dance')`",
+        ),
         ('event="heard" lumen:hears="dance"', 'event="noted" lumen:hears="dance"', "`hears()` has no counterpart"),
         (' lumen:hears="dance"', "", "`hears()` has no counterpart"),
     ],
-)  # fmt: skip
+)
 def test_a_condition_that_another_tool_changed_is_reported(old: str, new: str, lost: str) -> None:
     text, _ = write_scxml(Machine.from_dict(CHART), dotted("tour"))
     assert old in text

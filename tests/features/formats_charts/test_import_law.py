@@ -56,9 +56,12 @@ def _state(random: Random, path: str, levels: int, names: list[str], region: boo
 
 
 HISTORIES: tuple[Mapping[str, Any], ...] = (
-    {"history": True}, {"history": "shallow"}, {"history": "deep"}, {"type": "history"},
+    {"history": True},
+    {"history": "shallow"},
+    {"history": "deep"},
+    {"type": "history"},
     {"type": "history", "history": "deep"},
-)  # fmt: skip
+)
 
 
 def _lead(random: Random, state: dict[str, Any], path: str, names: list[str], region: bool = False) -> None:

@@ -33,7 +33,7 @@ HOST: dict[str, Any] = {
         },
         "two": {"initial": "a", "states": {"a": {"on": {"go": "b"}}, "b": {}}, "invoke": {"behavior": "quiz"}},
     },
-}  # fmt: skip
+}
 
 
 @pytest.fixture
@@ -127,8 +127,10 @@ def test_diagrams_show_what_is_inside_once(host: Machine) -> None:
     lines = [line.strip() for line in mermaid(host).splitlines()]
     start = lines.index('state "one" as s1 {')
     assert lines[start + 1 : start + 4] == [
-        'state "quiz" as s1i0 {', 'state "ask" as s1i0s1', 'state "over" as s1i0s2',
-    ]  # fmt: skip
+        'state "quiz" as s1i0 {',
+        'state "ask" as s1i0s1',
+        'state "over" as s1i0s2',
+    ]
     assert 'state "again#58; quiz" as s1i1' in lines
     assert lines.index("s3 --> s4 : go") < lines.index('state "quiz" as s2i0') - 1  # in the region of its states
     assert sum('"ask"' in line for line in lines) == 1
@@ -147,7 +149,9 @@ def test_what_json_lost_of_xstate_is_listed() -> None:
     data = {"states": {"a": {"entry": [None, "hi"], "on": {"x": {"meta": {"y": 1}}}}}, "output": {"z": 1}}
     found, said = read_xstate("m.json", json.dumps(data).encode(), "m")
     assert {d.message for d in said} == {
-        "a machine can't have `output`", "an action is null: JSON can't contain its code",
-        "the code of the action `hi` is not in the file", "`meta` is not carried over",
-    }  # fmt: skip
+        "a machine can't have `output`",
+        "an action is null: JSON can't contain its code",
+        "the code of the action `hi` is not in the file",
+        "`meta` is not carried over",
+    }
     assert "hi" in document_yaml(found)

@@ -113,9 +113,11 @@ def test_a_final_state_of_a_parallel_one_is_written_as_a_state_that_is_at_its_en
 
 
 def test_values_that_change_their_kind_are_of_any() -> None:
-    data, _ = read('<datamodel><data id="x" expr="0"/><data id="y" expr="x + 1"/>'
-                   '<data id="z">[1, "a"]</data></datamodel>'
-                   '<state id="a"><onentry><assign location="x" expr="\'t\'"/></onentry></state>')  # fmt: skip
+    data, _ = read(
+        '<datamodel><data id="x" expr="0"/><data id="y" expr="x + 1"/>'
+        '<data id="z">[1, "a"]</data></datamodel>'
+        '<state id="a"><onentry><assign location="x" expr="\'t\'"/></onentry></state>'
+    )
     assert data["context"] == {"x": 0, "y": None, "z": [1, "a"]}
     assert data["types"] == {"x": {}}
     assert data["entry"] == [{"assign": {"y": "context.x + 1"}}]
@@ -186,9 +188,11 @@ def test_the_value_of_or_and_and_is_that_of_an_operand(expression: str, value: s
 
 
 def test_assignments_to_a_part() -> None:
-    data, said = read('<datamodel><data id="v" expr="{}"/></datamodel><state id="a"><onentry>'
-                      '<assign location="v.at.room" expr="2"/>\n<assign location="w.at" expr="2"/>\n'
-                      '<assign location="v[0]" expr="2"/></onentry></state>')  # fmt: skip
+    data, said = read(
+        '<datamodel><data id="v" expr="{}"/></datamodel><state id="a"><onentry>'
+        '<assign location="v.at.room" expr="2"/>\n<assign location="w.at" expr="2"/>\n'
+        '<assign location="v[0]" expr="2"/></onentry></state>'
+    )
     assert data["states"]["a"]["entry"] == [{"assign": {"v.at.room": 2}}]
     assert said == [
         "3: `<assign>` to `w.at`, which is not declared",

@@ -86,5 +86,9 @@ def test_faults_are_found() -> None:
     state = '<state id="1"><onentry><state/></onentry><transition/></state>'
     text = f'<scxml xmlns="{SCXML_NAMESPACE}" initial="b">{state}</scxml>'
     assert set(faults(text)) == {
-        "onentry/state", "a transition without anything", "`1` is no id", "`` is no id", "there is no `b`",
-    }  # fmt: skip
+        "onentry/state",
+        "a transition without anything",
+        "`1` is no id",
+        "`` is no id",
+        "there is no `b`",
+    }

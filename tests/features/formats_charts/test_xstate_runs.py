@@ -115,7 +115,7 @@ CHARTS: list[tuple[dict[str, Any], list[Any]]] = [
         },
         [1.5, 0.5, 0.4, 0.2, "back", 1.0, "now", 5.0],
     ),
-]  # fmt: skip
+]
 
 
 def by_xstate(rows: list[dict[str, Any]]) -> Any:

@@ -201,11 +201,13 @@ def test_the_norms_of_octave(norm: str) -> None:
     ("text", "words"),
     [
         (JFUZZY.replace("DEFUZZIFY tip", "FUZZIFY tip").replace("METHOD : COG;", ""), "no output is left"),
-        (JFUZZY.replace("TRIAN 0 5 10", "FUNCTION thing * 2").replace("(20, 0) (30, 1) (30, 0)", "TRIAN 9 8 7"),
-         "5:15: nothing is written: no output is left (the term `cheap` of `tip` is left out"),
+        (
+            JFUZZY.replace("TRIAN 0 5 10", "FUNCTION thing * 2").replace("(20, 0) (30, 1) (30, 0)", "TRIAN 9 8 7"),
+            "5:15: nothing is written: no output is left (the term `cheap` of `tip` is left out",
+        ),
         (JFUZZY.replace("METHOD : COG", "METHOD : COGS"), "would become a file with an error at `"),
     ],
-)  # fmt: skip
+)
 def test_what_we_could_not_load_is_not_written(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], text: str, words: str
 ) -> None:

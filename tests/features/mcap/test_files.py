@@ -25,7 +25,7 @@ JSON = st.recursive(
     st.none() | st.booleans() | st.integers(-(2**53), 2**53) | st.floats(-1e9, 1e9) | st.text(),
     lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.text() | st.just("_lumen"), inner, max_size=3),
     max_leaves=6,
-)  # fmt: skip
+)
 
 
 @given(JSON)

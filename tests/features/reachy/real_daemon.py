@@ -52,8 +52,10 @@ class RealDaemon:
         with self.log.open("ab") as log:
             self.process = Guarded(
                 [program(), self._kind, *headless, *options, "--fastapi-port", self.port],
-                env=environment, stdout=log, stderr=STDOUT,
-            )  # fmt: skip
+                env=environment,
+                stdout=log,
+                stderr=STDOUT,
+            )
         until(self._runs, what="the daemon runs", every=0.2, shown=lambda: self.log.read_text()[-2000:])
 
     def kill(self) -> None:

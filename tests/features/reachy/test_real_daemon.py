@@ -157,8 +157,10 @@ def test_the_host_greets_dances_and_says_goodbye(daemon: RealDaemon, tmp_path: P
             for state in states:
                 until(
                     lambda state=state: state in entered,
-                    meanwhile=lambda: exhibition.run(seconds=0.2), what=state, shown=lambda: entered,
-                )  # fmt: skip
+                    meanwhile=lambda: exhibition.run(seconds=0.2),
+                    what=state,
+                    shown=lambda: entered,
+                )
                 del entered[: entered.index(state) + 1]
 
         until(lambda: "waiting" in exhibition.configuration, meanwhile=lambda: exhibition.run(seconds=0.2))

@@ -28,8 +28,10 @@ def test_the_shipped_tour_greets_and_says_goodbye(
             """Run until a state was entered since the last one."""
             until(
                 lambda: any(path.rpartition(".")[2] == state for path in entered),
-                meanwhile=lambda: exhibition.run(seconds=0.2), what=state, shown=lambda: entered[-12:],
-            )  # fmt: skip
+                meanwhile=lambda: exhibition.run(seconds=0.2),
+                what=state,
+                shown=lambda: entered[-12:],
+            )
             entered.clear()
 
         def hears(text: str) -> None:

@@ -26,7 +26,7 @@ JOINTS = {
     "RElbowYaw": ("RShoulderRoll", (0.105, -0.015, 0), (1, 0, 0), -2.08567, 2.08567, 1.547),
     "RElbowRoll": ("RElbowYaw", (0, 0, 0), (0, 0, 1), 0.0349066, 1.54462, 1.532),
     "RWristYaw": ("RElbowRoll", (0.05595, 0, 0), (1, 0, 0), -1.82387, 1.82387, 0.4075),
-}  # fmt: skip
+}
 
 # link: (mass [kg], centre of mass [m], inertia about it: xx yy zz xy xz yz [kg m^2]), in the frame of its joint
 LINKS = {

@@ -30,8 +30,11 @@ def start(tmp_path: Path, broker: RabbitMQ) -> Iterator[Callable[[str], Path]]:
             process = Guarded(
                 [sys.executable, "-m", "lumen", "run", tmp_path / "hall", "--robot", "own", "--only", parts],
                 env={**os.environ, "LUMEN_BUS": broker.url, "XDG_STATE_HOME": str(tmp_path / "state")},
-                text=True, stdin=DEVNULL, stdout=stack.enter_context(log.open("w")), stderr=STDOUT,
-            )  # fmt: skip
+                text=True,
+                stdin=DEVNULL,
+                stdout=stack.enter_context(log.open("w")),
+                stderr=STDOUT,
+            )
             stack.callback(process.wait)
             stack.callback(process.kill)
             return log

@@ -152,11 +152,13 @@ class Day:
         numbers["rows"] = self.rows
         rows = {name: getattr(self, name).most_common(MAX_ROWS) for name in COUNTED}
         return {
-            "date": self.day.isoformat(), "dates": [one.isoformat() for one in self.dates],
+            "date": self.day.isoformat(),
+            "dates": [one.isoformat() for one in self.dates],
             "visits": [visit.to_json() for visit in self.visits],
             "between": [stretch.to_json() for stretch in self.between],
-            "marks": [mark.to_json() for mark in self.marks], "numbers": numbers | rows,
-        }  # fmt: skip
+            "marks": [mark.to_json() for mark in self.marks],
+            "numbers": numbers | rows,
+        }
 
 
 COUNTED = ("asked", "missed", "answers", "languages")

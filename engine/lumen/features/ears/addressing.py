@@ -34,8 +34,11 @@ class Addressing:
 
     def routes(self) -> Mapping[str, Callable[[Any, float], None]]:
         """Return the configured routes that open the ears, each with a function of a body and its arrival time [s]."""
-        return {route: take for key, route, take in (("face", "face", self.face), ("touch", "tactile", self.touch))
-                if key in self._said}  # fmt: skip
+        return {
+            route: take
+            for key, route, take in (("face", "face", self.face), ("touch", "tactile", self.touch))
+            if key in self._said
+        }
 
     def face(self, body: Any, at: float) -> None:
         """Open the ears if a face is near enough and looks at the robot.

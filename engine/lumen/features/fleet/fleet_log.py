@@ -36,9 +36,12 @@ class FleetLog:
         self._numbers: dict[str, dict[str, Mapping[str, float]]] = {}
         match home.read_json(FILE):
             case {
-                "next": int(next), "incidents": list(incidents), "kinds": dict(kinds), "ids": list(ids),
+                "next": int(next),
+                "incidents": list(incidents),
+                "kinds": dict(kinds),
+                "ids": list(ids),
                 "numbers": dict(numbers),
-            }:  # fmt: skip
+            }:
                 self.next, self.kinds, self._numbers, self._ids = next, kinds, numbers, dict.fromkeys(ids)
                 self.incidents.extend(incidents)
 

@@ -33,9 +33,11 @@ ORS: Mapping[str, tuple[str, str]] = {
 
 ACTS: Mapping[str, str] = {word: meant for word, (meant, _) in ANDS.items()}
 ACCUS: Mapping[str, str] = {
-    **{word: meant for word, (meant, _) in ORS.items()}, "nsum": "normalized-sum", "sum": "unbounded-sum",
+    **{word: meant for word, (meant, _) in ORS.items()},
+    "nsum": "normalized-sum",
+    "sum": "unbounded-sum",
     "probor": "algebraic-sum",
-}  # fmt: skip
+}
 METHODS = {"cog": "centroid", "cogs": "weighted-average", "cogf": "weighted-average", "coa": "bisector",
            "lm": "smallest-of-maximum", "rm": "largest-of-maximum", "mm": "mean-of-maximum"}  # fmt: skip
 

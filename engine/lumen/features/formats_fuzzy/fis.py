@@ -66,8 +66,11 @@ _NORMS = {
     ),
 }  # fmt: skip
 _USUAL = {
-    "conjunction": "minimum", "disjunction": "maximum", "implication": "minimum", "defuzzifier": "centroid",
-}  # fmt: skip
+    "conjunction": "minimum",
+    "disjunction": "maximum",
+    "implication": "minimum",
+    "defuzzifier": "centroid",
+}
 
 
 MAX_TERM_NUMBER, MAX_TERM_GAP = 1e6, 10

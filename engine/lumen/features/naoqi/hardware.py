@@ -81,13 +81,16 @@ NAO = Hardware(
     force=FORCE_SENSORS,
     lights={
         **_FACE_LIGHTS,
-        "head": "BrainLeds", "feet": "FeetLeds", "left_foot": "LeftFootLeds", "right_foot": "RightFootLeds",
+        "head": "BrainLeds",
+        "feet": "FeetLeds",
+        "left_foot": "LeftFootLeds",
+        "right_foot": "RightFootLeds",
     },
     breathing=("Arms", "Legs"),
     edge="a foot",
     reach=0.1,
     gets_up=True,
-)  # fmt: skip
+)
 
 PEPPER = Hardware(
     touch={

@@ -119,8 +119,9 @@ class NaoqiSkills:
             self._unspoken.add(language)
             _log.warning(
                 "the robot has no voice for `%s` (it has %s): it reads the text in the language that it is set to",
-                language, ", ".join(map(str, spoken or ())) or "none",
-            )  # fmt: skip
+                language,
+                ", ".join(map(str, spoken or ())) or "none",
+            )
         if not (spelt := words(text)):
             return
         if not self.body_language or said.gestures == "none":

@@ -72,8 +72,11 @@ class NaoqiWalks:
 
         Raises RobotError before any movement if the walk is invalid or a hazard is near.
         """
-        numbers = (command.x, command.y, command.theta) if isinstance(command, Walk) else (
-            command.vx, command.vy, command.vtheta)  # fmt: skip
+        numbers = (
+            (command.x, command.y, command.theta)
+            if isinstance(command, Walk)
+            else (command.vx, command.vy, command.vtheta)
+        )
         if not all(map(isfinite, numbers)):
             raise BadCommandError(f"there is no way to {numbers}")
         if isinstance(command, Walk) and hypot(command.x, command.y) > MAX_WALK_DISTANCE:

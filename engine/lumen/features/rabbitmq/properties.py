@@ -216,5 +216,8 @@ _NUMBERS = {
 """The `struct` formats of integers and booleans, by type letter."""
 _READERS: dict[str, Any] = {"text": _text, "table": _table, "byte": _byte, "time": _time}
 _WRITERS: dict[str, Callable[[Any], bytes]] = {
-    "text": short_text, "table": _table_of, "byte": Struct("B").pack, "time": Struct(">Q").pack,
-}  # fmt: skip
+    "text": short_text,
+    "table": _table_of,
+    "byte": Struct("B").pack,
+    "time": Struct(">Q").pack,
+}

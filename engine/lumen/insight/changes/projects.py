@@ -58,11 +58,14 @@ def summary(found: Sequence[Change]) -> str:
 def _changes(old: Project, new: Project) -> Iterator[Change]:
     yield from _settings(old, new)
     yield from entry_changes(
-        "behavior", "behaviour", Risk.BEHAVIOR, "behaviors/{}.yaml",
+        "behavior",
+        "behaviour",
+        Risk.BEHAVIOR,
+        "behaviors/{}.yaml",
         {name: (name, machine) for name, machine in old.behaviors.items()},
         {name: (name, machine) for name, machine in new.behaviors.items()},
         lambda before, after: machine_changes(after[0], before[1], after[1]),
-    )  # fmt: skip
+    )
     yield from entry_changes("skill", "skill", Risk.BEHAVIOR, "skills/{}.yaml", _manifests(old), _manifests(new))
     yield from entry_changes(
         "function", "function", Risk.BEHAVIOR, "functions/{}.yaml", old.functions, new.functions, function_changes

@@ -143,10 +143,13 @@ class _Migration:
         behavior = self.new.chart.definition.invoked_behavior(owner.path, id)
         old, new = self.old.invoked[behavior].chart.definition, self.new.invoked[behavior].chart.definition
         lent = child.snapshot._replace(
-            language=after.language, counters=after.counters, generator=after.generator, epoch=after.epoch,
+            language=after.language,
+            counters=after.counters,
+            generator=after.generator,
+            epoch=after.epoch,
             place=after.place,
             timezone=after.timezone,
-        )  # fmt: skip
+        )
         options = self.situation.options._replace(at=after.at, languages=(), is_invoked=True)
         verdict = migrated(old, new, lent, options, behavior)
         if isinstance(verdict, MigrationPlan):

@@ -39,9 +39,12 @@ def desired_from(text: str) -> DesiredState | None:
         return None
     match data:
         case {
-            "centre": str(centre), "term": int(term), "version": int(version), "house": str(house),
+            "centre": str(centre),
+            "term": int(term),
+            "version": int(version),
+            "house": str(house),
             "robots": dict(robots),
-        } if all(isinstance(want, str) for want in robots.values()):  # fmt: skip
+        } if all(isinstance(want, str) for want in robots.values()):
             return DesiredState(centre, term, version, house, robots, str(data.get("trying", "")))
     return None
 

@@ -9,10 +9,13 @@ from lumen.language.actions import AskQuestion, If, PlacedAction, Raise, Send
 from lumen.language.machines import MachineDefinition, State, Transition
 
 _OWN_EVENTS = {
-    "xstate.done.state.": "done.state.", "done.state.": "done.state.",
-    "xstate.done.actor.": "done.invoke.", "done.invoke.": "done.invoke.",
-    "xstate.error.actor.": "error.invoke.", "error.platform.": "error.invoke.",
-}  # fmt: skip
+    "xstate.done.state.": "done.state.",
+    "done.state.": "done.state.",
+    "xstate.done.actor.": "done.invoke.",
+    "done.invoke.": "done.invoke.",
+    "xstate.error.actor.": "error.invoke.",
+    "error.platform.": "error.invoke.",
+}
 """Lumen's prefixes for XState's own events, by the prefixes in versions 5 and 4."""
 
 _DESCRIPTOR = re.compile(r"\*|[^\s.*]+(\.[^\s.*]+)*(\.\*)?")

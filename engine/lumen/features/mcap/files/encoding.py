@@ -27,10 +27,8 @@ MAX_TOPICS = 4_096
 _ORIGIN_SCHEMA = {
     "type": "object",
     "description": "The message on the bus: its id, its sender, and its cause in the behaviour.",
-    "properties": {
-        name: {"type": "string"} for name in ("id", "sender", "cause", "reply_to", "correlation_id")
-    },
-}  # fmt: skip
+    "properties": {name: {"type": "string"} for name in ("id", "sender", "cause", "reply_to", "correlation_id")},
+}
 
 
 def nanoseconds(moment: float) -> int:
