@@ -10,6 +10,7 @@ import pytest
 
 import lumen
 from lumen.bus import connect
+from lumen.cli.main import main
 from lumen.clock.checked import ability
 from lumen.errors import ExpressionError, LumenError, Refused
 from lumen.expressions import Scope, compile_expression
@@ -26,6 +27,7 @@ from lumen.run.forgetting.added import FeatureForgetter
 from lumen.run.setup import set_up
 from lumen.run.voices import AddedVoice
 from tests import ROOT
+from tests.copying import copied_project
 from tests.stranger.installing import Installed
 
 BASE = ROOT / "tests/lint/pages/base"
@@ -60,6 +62,16 @@ LINT = {
         RULES,
         f"{CHECK}draft.loose.append(7)",
         "its rule `faulty_code:check` reported 7, which is no finding",
+    ),
+    "rule that replaces a part of the draft": (
+        RULES,
+        f"{CHECK}draft.behaviors = None",
+        "its rule `faulty_code:check` replaced `behaviors` of the draft: a rule reads the draft, and reports findings",
+    ),
+    "rule that deletes a part of the draft": (
+        RULES,
+        f"{CHECK}del draft.reports",
+        "its rule `faulty_code:check` replaced `reports` of the draft: ",
     ),
     "rule without a place": (
         RULES,
@@ -143,6 +155,22 @@ def test_a_faulty_repair_is_an_error_that_names_its_package(code: str, fault: st
     with pytest.raises(LumenError) as raised:
         fixes(finding, files)
     assert str(raised.value).startswith(PREFIX + fault)
+
+
+def test_lint_makes_the_other_repairs_and_names_the_package_of_a_faulty_one(
+    installed: Installed, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    check = f"{CODES}def check(draft): draft.main(ODD, ('name',), 'is odd')\ndef repair(*given): return 3\n"
+    row = f"{RULES}, fixes={{'odd': 'faulty_code:repair'}}"
+    installed.write("faulty", MANIFEST.format(row=row), faulty_code=check)
+    project = copied_project(BASE, tmp_path / "project")
+    wrong = (project / "lumen.yaml").read_text().replace("name:", "nmae:")
+    (project / "lumen.yaml").write_text(f"{wrong}\n")
+    main(["lint", str(project), "--fix"])
+    said = capsys.readouterr().err
+    assert said.startswith(f"{PREFIX}`faulty_code:repair` returned 3 instead of a list of `Fix` (update")
+    assert "[unknown-key]" in said
+    assert "name:" in (project / "lumen.yaml").read_text()
 
 
 @pytest.mark.parametrize(

@@ -17,9 +17,19 @@ from lumen.upkeep.replacing import replace_file
 
 
 def repair(what: LintTarget, wanted: Wanted) -> tuple[Mapping[str, bytes], Mapping[str, bytes], list[Repair]]:
-    """Return the files of a project before and after the repair, and the repairs that were made."""
-    before = what.files()
-    after, done = repaired(before, lambda files: checked(what.root, files), lambda d: wanted(d) and what.shown(d))
+    """Return the files of a project before and after the repair, and the repairs that were made.
+
+    Faults of repairs that installed packages provide are printed on standard error, each once.
+    """
+    before, faults = what.files(), set[str]()
+    after, done = repaired(
+        before,
+        lambda files: checked(what.root, files),
+        lambda d: wanted(d) and what.shown(d),
+        lambda error: faults.add(str(error)),
+    )
+    for fault in sorted(faults):
+        print(clean(fault), file=sys.stderr)
     return before, after, done
 
 

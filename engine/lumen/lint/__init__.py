@@ -77,11 +77,14 @@ def _section_rules(found: ProjectDraft) -> Iterator[tuple[Feature, str]]:
 
 def _apply(feature: Feature, rule: str, found: ProjectDraft) -> None:
     """Run a rule; a fault of a rule that another installed package provides becomes a finding."""
-    returned: object = None
+    returned, before = None, dict(vars(found))
     with faults_reported(feature, f"its rule `{rule}`", found.loose.append):
         returned = resolve(rule)(found)
     if distribution := distribution_of(feature):
-        faults = [f"reported {shown(each)}, which is no finding" for each in _remove_unsound(found)]
+        replaced = [name for name, value in before.items() if vars(found).get(name) is not value]
+        vars(found).update((name, before[name]) for name in replaced)
+        faults = [f"replaced `{name}` of the draft: a rule reads the draft, and reports findings" for name in replaced]
+        faults += [f"reported {shown(each)}, which is no finding" for each in _remove_unsound(found)]
         if returned is not None:
             faults.append(f"returned {shown(returned)}: a rule reports its findings, and returns None")
         found.loose += (broken(distribution, f"its rule `{rule}` {fault}") for fault in faults[:1])

@@ -5,9 +5,10 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import NamedTuple
 
+from lumen.errors import LumenError
 from lumen.language.diagnostics import Diagnostic, Severity, has_errors
 from lumen.lint.codes import codes
-from lumen.lint.fixes import Edit, Fix, edited, fixes
+from lumen.lint.fixes import Edit, Fix, edited, usable_fixes
 from lumen.project.yaml_errors import TAB, YAML_SYNTAX
 from lumen.project.yaml_nodes import DUPLICATE_KEY
 
@@ -32,17 +33,21 @@ class Repair(NamedTuple):
 
 
 def repaired(
-    files: ProjectFiles, check: FileLinter, wanted: Callable[[Diagnostic], bool]
+    files: ProjectFiles,
+    check: FileLinter,
+    wanted: Callable[[Diagnostic], bool],
+    failed: Callable[[LumenError], object] = lambda error: None,
 ) -> tuple[ProjectFiles, list[Repair]]:
     """Return the files with every fix of a wanted finding that improves them, and the repairs that were made.
 
     An improvement removes the finding and adds no other. All fixes are tried together; if that fails, each half of
-    them is tried separately, and so on.
+    them is tried separately, and so on. `failed` is called with each fault of a repair that an installed package
+    provides, perhaps several times; the other repairs are made.
     """
     found, done = check(files), list[Repair]()
     for _ in range(MAX_REPAIR_ROUNDS):
         before = len(done)
-        steps = _steps(found, files, wanted)
+        steps = _steps([(d, usable_fixes(d, files, failed)) for d in found if wanted(d)])
         while steps:
             step = [r for r in steps.pop() if r.diagnostic in found]  # else it was repaired or has moved
             after = applied(files, step)
@@ -57,14 +62,11 @@ def repaired(
     return files, done
 
 
-def _steps(
-    found: Sequence[Diagnostic], files: ProjectFiles, wanted: Callable[[Diagnostic], bool]
-) -> list[list[Repair]]:
+def _steps(proposals: Sequence[tuple[Diagnostic, list[Fix]]]) -> list[list[Repair]]:
     """Return the repairs to try, the last first.
 
     They are the likeliest fix of every finding together, then each of the other fixes alone.
     """
-    proposals = [(d, fixes(d, files)) for d in found if wanted(d)]
     others = [[Repair(d, fix)] for d, proposed in proposals for fix in proposed[1:]]
     return [*reversed(others), [Repair(d, proposed[0]) for d, proposed in proposals if proposed]]
 

@@ -4,9 +4,10 @@ A fix is a proposal: the caller lints the edited files, and keeps the fix only i
 other has appeared (`lint.repairs`).
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
+from lumen.errors import LumenError
 from lumen.feature import owner, resolve, table
 from lumen.language.diagnostics import Diagnostic
 from lumen.lint.codes import codes
@@ -14,7 +15,7 @@ from lumen.lint.fixes.edits import Edit, FileText, Fix, edited
 from lumen.lint.fixes.misspellings import outnumbered, slip
 from lumen.project.broken_features import blaming, faulty, shown
 
-__all__ = ["Edit", "FileText", "Fix", "edited", "fixes"]
+__all__ = ["Edit", "FileText", "Fix", "edited", "fixes", "usable_fixes"]
 
 SLIP = "lumen.lint.fixes.misspellings:slip"
 """The repair of codes that begin with `unknown-` or `wrong-` and have no repair of their own."""
@@ -35,6 +36,17 @@ def fixes(diagnostic: Diagnostic, files: Mapping[str, bytes]) -> list[Fix]:
     if where != SLIP or codes()[diagnostic.code].family == "shape":
         return proposed
     return [fix for fix in proposed for edit in fix.edits if not outnumbered(source.at(edit.place), edit.text, files)]
+
+
+def usable_fixes(
+    diagnostic: Diagnostic, files: Mapping[str, bytes], failed: Callable[[LumenError], object]
+) -> list[Fix]:
+    """Return the fixes for this finding; none if its repair is faulty, which is told to `failed`."""
+    try:
+        return fixes(diagnostic, files)
+    except LumenError as error:
+        failed(error)
+        return []
 
 
 def _proposed(where: str, diagnostic: Diagnostic, source: FileText) -> list[Fix]:

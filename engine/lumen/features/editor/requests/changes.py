@@ -1,5 +1,7 @@
 """Changes to the project's files: renaming, and fixes of findings."""
 
+import logging
+
 from lsprotocol import types as lsp
 from pygls.exceptions import JsonRpcContentModified, JsonRpcInvalidParams
 
@@ -7,9 +9,10 @@ from lumen.errors import LumenError
 from lumen.features.editor import renaming
 from lumen.features.editor.analysis import Analysis
 from lumen.features.editor.language_server import LanguageServer
-from lumen.lint.fixes import fixes
+from lumen.lint.fixes import usable_fixes
 
 RENAMING = lsp.RenameOptions(prepare_provider=True)
+_log = logging.getLogger(__name__)
 REPAIRS = lsp.CodeActionOptions(code_action_kinds=[lsp.CodeActionKind.QuickFix])
 
 
@@ -58,7 +61,7 @@ async def repair(server: LanguageServer, params: lsp.CodeActionParams) -> list[l
         here = encoder.ranges(file).range(diagnostic.place)
         if diagnostic.place.file != file or here.end < params.range.start or params.range.end < here.start:
             continue
-        for fix in fixes(diagnostic, analysis.files):
+        for fix in usable_fixes(diagnostic, analysis.files, _log.error):
             edit = lsp.WorkspaceEdit(document_changes=list(encoder.edits(fix.edits)))
             said = [encoder.diagnostic(diagnostic)]
             actions.append(
