@@ -1,5 +1,6 @@
 """Faults of rows that lint, expressions, senses, voices and forgetting use: each costs its row alone."""
 
+import json
 import logging
 from collections.abc import Callable
 from contextlib import closing
@@ -100,6 +101,17 @@ def test_lint_reports_a_faulty_row_once_and_names_its_package(case: str, install
     (finding,) = check_files(BASE, read_files(BASE))[1]
     assert finding.code == "broken-feature"
     assert finding.message.startswith(PREFIX + fault)
+
+
+def test_what_a_package_prints_does_not_reach_the_json_of_lint(
+    installed: Installed, capsys: pytest.CaptureFixture[str]
+) -> None:
+    manifest = f"print('a manifest')\n{MANIFEST.format(row=RULES)}"
+    installed.write("faulty", manifest, faulty_code="print('a module')\ndef check(draft): print('a rule')")
+    main(["lint", str(BASE), "--format", "json"])
+    printed = capsys.readouterr()
+    assert json.loads(printed.out)["diagnostics"] == []
+    assert printed.err.split("\n")[:3] == ["a manifest", "a module", "a rule"]
 
 
 OPTIONS = "modules={{'mood': ModuleRow('faulty_code:Mood', '', {{'odd': {schema}, 'even': {{'type': 'integer'}}}})}}"

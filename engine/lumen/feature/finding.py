@@ -1,6 +1,8 @@
 """All features: the manifests that come with Lumen and those of installed packages, and their rows."""
 
+import sys
 from collections.abc import Iterable, Iterator, Mapping
+from contextlib import redirect_stdout
 from functools import cache
 from importlib import import_module
 from typing import Any, NamedTuple
@@ -133,7 +135,8 @@ def found() -> Found:
 def _manifest(distribution: Distribution) -> tuple[Feature | None, str]:
     """Return the feature of a distribution, and the first fault of its manifest; no feature if it can't be read."""
     try:
-        feature = resolve(distribution.manifest)
+        with redirect_stdout(sys.stderr):  # standard output may be JSON that a program reads
+            feature = resolve(distribution.manifest)
         if not isinstance(feature, Feature):
             return None, f"its entry point names `{distribution.manifest}`, which is no `Feature`"
         if feature.api != API:

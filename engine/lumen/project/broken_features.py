@@ -1,7 +1,8 @@
 """Findings about features of other installed packages that can't be used."""
 
+import sys
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext, redirect_stdout
 from traceback import walk_tb
 from typing import Any
 
@@ -84,10 +85,12 @@ def faults_reported(
     """Run code of a feature; report a finding that names the distribution for any fault of that code.
 
     Errors of Lumen's own features and of the types in `passed` are raised unchanged, and so is KeyboardInterrupt.
-    `what` names the code, such as "its rule `NAME`".
+    `what` names the code, such as "its rule `NAME`". What code of an installed package prints goes to standard error,
+    since a program may read Lumen's standard output.
     """
     try:
-        yield
+        with redirect_stdout(sys.stderr) if distribution_of(feature) else nullcontext():
+            yield
     except KeyboardInterrupt:
         raise
     except passed:
