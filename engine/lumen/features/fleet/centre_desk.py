@@ -19,7 +19,21 @@ from lumen.language.fleet_keys import ORDER
 from lumen.ports import Bus, Message
 
 MAX_STEPS = 20
-ASKED = ("status", "publish", "rollout", "try", "pause", "go", "abort", "pin", "unpin", "take-over", "files")
+_BUNDLE, _ROBOT = 'a `bundle`, such as {"bundle": "3f9a0c"}', 'a `robot`, such as {"robot": "itb/nao1"}'
+ASKED: Mapping[str, str] = {
+    "status": "",
+    "publish": "a `bundle` with its `hash` and files, as `lumen fleet publish` sends it",
+    "rollout": _BUNDLE,
+    "try": _BUNDLE,
+    "pause": "",
+    "go": "",
+    "abort": "",
+    "pin": _ROBOT,
+    "unpin": _ROBOT,
+    "take-over": "",
+    "files": _BUNDLE,
+}
+"""The requests, and what each needs besides `ask`, in words."""
 
 
 class CentreDesk:
@@ -84,6 +98,8 @@ class CentreDesk:
             case {"ask": "files", "bundle": str(name)}:
                 found = centre.bundles.files(self._named(name)) or {}
                 return {"files": {path: text.decode("utf-8", "replace") for path, text in found.items()}}
+            case {"ask": str(verb)} if verb in ASKED:
+                raise UsageError(f"`{verb}` needs {ASKED[verb]}")
             case {"ask": str(verb)}:
                 raise UsageError(
                     f"the centre has no request `{verb[:40]}`: {did_you_mean(verb[:40], ASKED, 'there are')}"
