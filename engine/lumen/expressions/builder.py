@@ -90,8 +90,7 @@ class CodeBuilder:
 
     def node(self, node: ExpressionNode) -> ast.expr:
         """Return the Python node for a node of the expression, with its place."""
-        built = self.build(node)
-        return self.place(built, node)
+        return self.place(self.build(node), node)
 
     def place(self, built: ast.expr, node: ExpressionNode) -> ast.expr:
         """Return the Python node, with the number of the expression's node as its line number."""

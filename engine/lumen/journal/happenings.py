@@ -16,8 +16,7 @@ def happening(message: Message, robot: str) -> str:
     """
     match message.body:
         case {"ask": operator_requests.MARK.ask, **rest} if message.key in _keys(OPERATOR_REQUEST, robot):
-            text = str(rest.get("text") or "")[:MAX_TEXT]
-            return f"{MARK} {text}".strip()
+            return f"{MARK} {str(rest.get('text') or '')[:MAX_TEXT]}".strip()
         case {"verdict": str(verdict)} if message.key in _keys(CONFIG_STATUS, robot):
             return NOT_TAKEN.get(verdict, "")
         case {"noticed": str(name), "robot": str(who)} | {"event": str(name), "robot": str(who)} if who == robot:

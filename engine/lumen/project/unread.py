@@ -187,9 +187,11 @@ def _at_root(root: Path, look: Callable[[str], object]) -> Iterator[Unread]:
     for name in listed_in(root, ""):
         if name in PROJECT_FOLDERS or name in MISTAKEN_FOLDERS or name == DRIVERS_FOLDER or name.startswith("."):
             continue
-        if name.lower() in ALL_FOLDERS or not (meant := _folder_named_like(name)):
-            continue
-        if not os.path.isdir(f"{root}/{name}"):
+        if (
+            name.lower() in ALL_FOLDERS
+            or not (meant := _folder_named_like(name))
+            or not os.path.isdir(f"{root}/{name}")
+        ):
             continue
         endings = (".py",) if meant == DRIVERS_FOLDER else endings_in(meant) or (".json",)
         if first := _first(root, name, endings, 1, look):

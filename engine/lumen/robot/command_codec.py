@@ -110,8 +110,7 @@ def _move_toward(p: CommandParameters) -> Move:
 
     given = p.number("x", 0.0), p.number("y", 0.0), p.turn()
     most = fastest_of(p.project.body, "brisk")
-    parts = [min(max(part, -1.0), 1.0) * limit for part, limit in zip(given, most, strict=True)]
-    return Move(*parts)
+    return Move(*(min(max(part, -1.0), 1.0) * limit for part, limit in zip(given, most, strict=True)))
 
 
 _METHODS: Mapping[str, Callable[[CommandParameters], RobotCommand | Language]] = {

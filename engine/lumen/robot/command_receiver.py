@@ -210,8 +210,7 @@ class CommandReceiver:
 
     def _listen(self, route: str) -> tuple[str, Callable[[], None]]:
         key = self._project.key_of(route)
-        receive = self._receive_aim if route == AIM_ROUTE else self._receive
-        return key, self._bus.subscribe(key, receive)
+        return key, self._bus.subscribe(key, self._receive_aim if route == AIM_ROUTE else self._receive)
 
     def _receive(self, message: Message) -> None:
         """Queue a message for `begin`, or refuse it; called on a thread of the bus."""

@@ -155,8 +155,7 @@ class Past:
             raise DeniedError(503, f"the exhibition did not send this day: {error}") from None
 
     async def _entries(self, request: Request) -> Response:
-        view = self.asked(request, Role.OPERATOR)
-        return _as_entries(await self.between(view, *_positions(request)))
+        return _as_entries(await self.between(self.asked(request, Role.OPERATOR), *_positions(request)))
 
     async def _search(self, request: Request) -> Response:
         """Return up to MAX_FOUND entries between two positions whose line contains a text, in any case and language."""
@@ -232,8 +231,7 @@ class Past:
         view = self._reception.robot(data.get("robot"))
         if not self.is_ours(view):
             raise DeniedError(400, ELSEWHERE)
-        said = [str(data.get(key, "")) for key in SAID]
-        return await self.written("saying", view, *said)
+        return await self.written("saying", view, *(str(data.get(key, "")) for key in SAID))
 
     async def _story(self, request: Request) -> Response:
         """Save a recorded visit as a story, which `lumen test` plays."""

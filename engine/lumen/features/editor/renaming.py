@@ -86,8 +86,7 @@ def rename(analysis: Analysis, use: NameUse, name: str) -> Renaming:
     if _taken(analysis, use, name):
         raise UsageError(f"there is already a {use.kind} `{name}`")
     uses = [other for other in analysis.index.of(use) if other.text == use.text]
-    edits = tuple(Edit(other.place, name) for other in uses)
-    return Renaming(edits, _moved(analysis, use, name))
+    return Renaming(tuple(Edit(other.place, name) for other in uses), _moved(analysis, use, name))
 
 
 def applied(analysis: Analysis, renaming: Renaming) -> Analysis:

@@ -64,8 +64,7 @@ def remember(home: Home, robot: str) -> AgentMemory:
     if not isinstance(data, Mapping):
         return AgentMemory()
     try:
-        row = {**data, "followed": FollowedOrder(**data["followed"])}
-        return AgentMemory(**row)
+        return AgentMemory(**{**data, "followed": FollowedOrder(**data["followed"])})
     except (KeyError, TypeError):
         return AgentMemory()
 

@@ -136,8 +136,7 @@ class ScriptReading:
         names = [argument.arg for argument in (*given.posonlyargs, *given.args)]
         pairs = [*zip(reversed(names), reversed(given.defaults), strict=False)]
         pairs += [(a.arg, d) for a, d in zip(given.kwonlyargs, given.kw_defaults, strict=True) if d]
-        found = dict.fromkeys(names) | {name: self._value(default) for name, default in pairs}
-        return found
+        return dict.fromkeys(names) | {name: self._value(default) for name, default in pairs}
 
     def take(self, statement: ast.stmt, branch: Branch) -> None:
         """Follow a statement's calls and literal assignments; record uncertain changes of variables."""

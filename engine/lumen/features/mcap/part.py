@@ -72,8 +72,7 @@ class RecordingPart(Part):
     def marking(self) -> str:
         """Return a sentence about where this moment is recorded; empty without a ring or a working file."""
         if self._ring:
-            minutes = self._said.ring / 60
-            return f"the last {minutes:g} min and the next minute are kept in {self._folder.path}"
+            return f"the last {self._said.ring / 60:g} min and the next minute are kept in {self._folder.path}"
         return f"everything is recorded into {self._file.path}" if self._file and not self._file.trouble else ""
 
     def use(self, project: Project) -> None:

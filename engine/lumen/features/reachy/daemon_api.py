@@ -145,5 +145,4 @@ def _detail(text: bytes) -> str:
         data = json.loads(text)
     except ValueError:
         return text.decode("utf-8", "replace")[:100]
-    detail = data.get("detail") if isinstance(data, dict) else data
-    return str(detail)[:100]
+    return str(data.get("detail") if isinstance(data, dict) else data)[:100]

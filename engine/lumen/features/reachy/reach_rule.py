@@ -30,5 +30,4 @@ def _place(motion: MotionDefinition, short: Shortage) -> NodePath:
     """Return the path of the key nearest in time to the shortage, preferably among the keys of its joint."""
     keys = [key for track in motion.tracks.values() for key in track if key.where]
     own = [key for key in motion.tracks.get(short.joint, ()) if key.where]
-    nearest = min(own or keys, key=lambda key: abs(key.time - short.time))
-    return nearest.where
+    return min(own or keys, key=lambda key: abs(key.time - short.time)).where

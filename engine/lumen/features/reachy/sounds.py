@@ -86,8 +86,7 @@ class RobotSounds:
         if not self._media():
             return LoadedSound(length)
         try:
-            content = on_disk(self._root, file).read_bytes()
-            return LoadedSound(length, self._upload(quieter(content, self.volume)))
+            return LoadedSound(length, self._upload(quieter(on_disk(self._root, file).read_bytes(), self.volume)))
         except (OSError, wave.Error, EOFError) as error:
             raise RobotFailedError(f"the sound {file} can't be read: {error}") from error
 

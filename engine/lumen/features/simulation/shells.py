@@ -111,8 +111,7 @@ class Ring:
         x, y = radius * np.cos(around), radius * np.sin(around)
         z = np.broadcast_to(self.flat * np.sin(across)[:, None], x.shape)
         grid = np.stack([x, y, z], axis=-1)
-        faces = _quads(9, 32, wrap=True) % (8 * 32)
-        return grid.reshape(-1, 3), faces
+        return grid.reshape(-1, 3), _quads(9, 32, wrap=True) % (8 * 32)
 
 
 def _through(sections: Vertices, s: Vertices) -> Vertices:

@@ -124,8 +124,7 @@ def _overruled(state: CentreState, heard: HeardRobots) -> CentreState:
             return replace(state, overruled=why)
         if said.term == state.term and said.centre == state.centre and said.version > state.version:
             newer = f"{robot} received order {said.version}, but the last order here is {state.version}"
-            why = f"{newer}: this folder is an old copy"
-            return replace(state, overruled=why)
+            return replace(state, overruled=f"{newer}: this folder is an old copy")
     return state
 
 

@@ -118,8 +118,7 @@ class ScxmlDataModel:
                 return kind_of(written(element.text))
             return kind(read_value(element.get("expr"), self.names), self.names.kinds)
         except ScriptError:
-            key = self.keys[element.get("location")]
-            return kind_of(self.first[key])
+            return kind_of(self.first[self.keys[element.get("location")]])
         except RecursionError:
             return UNKNOWN_KIND
 

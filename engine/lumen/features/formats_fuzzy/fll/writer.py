@@ -25,8 +25,7 @@ _UNFIT = re.compile(r"[^A-Za-z0-9_]+")
 def write_fll(controller: ControllerDefinition, place: PlaceOfPath) -> tuple[str, list[Diagnostic]]:
     """Return the engine's text, and findings about parts that FuzzyLite can't represent."""
     writer = _FllWriter(controller, ExportReport(place))
-    text = "\n".join(writer.lines()) + "\n"
-    return text, writer.report.diagnostics
+    return "\n".join(writer.lines()) + "\n", writer.report.diagnostics
 
 
 class _FllWriter:
