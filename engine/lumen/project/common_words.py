@@ -27,7 +27,9 @@ def common_words() -> bytes:
 
 def with_common_words(files: Mapping[str, bytes]) -> Mapping[str, bytes]:
     """Return the files of a project; if a behaviour uses the words that come with Lumen, their file is added."""
-    if COMMON_FILE in files or not any(_USED.search(content) for file, content in files.items() if _is_behavior(file)):
+    behaviors = (content for file, content in files.items() if _is_behavior(file))
+    likely = (content for content in behaviors if b"hears" in content or b"common" in content)  # the pattern is slow
+    if COMMON_FILE in files or not any(map(_USED.search, likely)):
         return files
     return dict(sorted({**files, COMMON_FILE: common_words()}.items()))
 

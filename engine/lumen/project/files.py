@@ -4,7 +4,8 @@ import hashlib
 import os
 import stat
 from collections.abc import Iterator, Mapping
-from pathlib import Path, PurePosixPath
+from itertools import accumulate
+from pathlib import Path
 from unicodedata import normalize
 
 from lumen.feature import table
@@ -73,7 +74,7 @@ def read_files(root: Path, robot: str = "", kept: KeptContents | None = None) ->
         if any(isinstance(found.get(each), Unreadable) for each in _within(folder)):
             continue
         try:
-            names = _names(root / folder, endings)
+            names = _names(os.path.join(root, folder), endings)
         except OSError as error:
             if folder not in MISTAKEN_FOLDERS:
                 found[folder] = Unreadable(_reason(error))
@@ -135,16 +136,15 @@ def _robots_own(root: Path) -> list[str]:
 
 def _within(folder: str) -> Iterator[str]:
     """Yield the folders that a folder of the project lies in, from the outermost, then the folder itself."""
-    yield from (str(each) for each in reversed(PurePosixPath(folder).parents) if each.name)
-    yield folder
+    yield from accumulate(folder.split("/"), "{}/{}".format)
 
 
-def _names(folder: Path, endings: tuple[str, ...]) -> list[str]:
+def _names(folder: str, endings: tuple[str, ...]) -> list[str]:
     """Return the file names in a folder, sorted, without dotfiles; none if it is missing. Raises other OSErrors."""
     try:
         listed = os.listdir(folder)
     except FileNotFoundError:
-        if not folder.is_symlink():
+        if not os.path.islink(folder):
             return []
         raise
     return sorted(name for name in listed if name.endswith(endings) and not name.startswith("."))[:MAX_FOLDER_FILES]
@@ -168,19 +168,19 @@ class _Reader:
 
     def leads_out(self, name: str) -> bool:
         """Return True if a file or folder of the project is a link to a place outside it."""
-        real = os.path.realpath(self._root / name)
+        real = os.path.realpath(os.path.join(self._root, name))
         return real != self._real and not real.startswith(self._real.rstrip(os.sep) + os.sep)
 
     def file(self, name: str) -> bytes | None:
         """Return the content, `Unreadable` with the reason if it can't be read, or None if there is no such file."""
-        path = self._root / name
+        path = os.path.join(self._root, name)
         try:
             entry = os.lstat(path)
             if stat.S_ISLNK(entry.st_mode) and self.leads_out(name):
                 return Unreadable(LEADS_OUT)
             content = self._kept.read(path, entry, MAX_FILE_BYTES)
         except FileNotFoundError:
-            return Unreadable(b"the file that it links to does not exist") if path.is_symlink() else None
+            return Unreadable(b"the file that it links to does not exist") if os.path.islink(path) else None
         except OSError as error:
             return Unreadable(_reason(error))
         if len(content) > self._left:

@@ -28,9 +28,9 @@ class KeptContents:
     """
 
     def __init__(self) -> None:
-        self._kept: dict[Path, _Kept] = {}
+        self._kept: dict[str, _Kept] = {}
 
-    def read(self, path: Path, entry: os.stat_result, most: int) -> bytes:
+    def read(self, path: str, entry: os.stat_result, most: int) -> bytes:
         """Return the content of the file at `path`, whose status is `entry`. Raises the same errors as `read_regular`.
 
         `most` is the maximum size [bytes].
@@ -39,7 +39,7 @@ class KeptContents:
         kept = self._kept.get(path)
         if kept and kept.identity == identity:
             return kept.content
-        content = read_regular(path, most)
+        content = read_regular(Path(path), most)
         newest = max(entry.st_mtime_ns, entry.st_ctime_ns)
         if stat.S_ISREG(entry.st_mode) and newest + SETTLED_NS < time.time_ns() and len(content) == entry.st_size:
             self._kept[path] = _Kept(identity, content)
