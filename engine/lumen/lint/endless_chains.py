@@ -1,6 +1,7 @@
 """Finds states that lead back to themselves without a guard or a delay: by events, `do`, `invoke`, `after: 0s`."""
 
 from collections.abc import Iterator
+from contextlib import suppress
 from functools import partial
 
 from lumen.language.diagnostics import WARNING, Code
@@ -63,29 +64,31 @@ def _beginnings(survey: ChainSurvey) -> Iterator[InstantChain]:
     It stops when the work exceeds MAX_WORK.
     """
     stays: dict[str | None, bool] = {None: True}
+    followed: set[tuple[str, tuple[str, ...], bool]] = set()
     for state in survey.machine.states.values():  # a parent comes before its children
         stays[state.path] = stays[state.parent] and _stays(survey, state)
         for transition in state.transitions if stays[state.path] else ():
             if survey.exhausted:
                 return
-            if not transition.event or not (transition.targets or sends_event(transition.actions)):
+            sends = sends_event(transition.actions)
+            if not transition.event or not (transition.targets or sends):
                 continue
+            way = survey.domain(transition), transition.targets, sends
+            if way in followed and not (sends or survey.speaks_at_exit(way[0])):
+                continue  # such a chain depends on the domain and the targets alone
+            followed.add(way)
             chain = InstantChain(survey)
-            try:
+            with suppress(UncertainError):
                 chain.stand_around(state.path)
                 chain.enter((state.path,), state.parent)
                 chain.internal, chain.timers, chain.begun = (), [], set(chain.active)
                 chain.take([transition], transition.event)
-            except UncertainError:
-                continue
-            chain.taken.clear()
-            yield chain
+                chain.taken.clear()
+                yield chain
     chain = InstantChain(survey)
-    try:
+    with suppress(UncertainError):
         chain.enter(("",), None)
-    except UncertainError:
-        return
-    yield chain
+        yield chain
 
 
 def _stays(survey: ChainSurvey, state: State) -> bool:

@@ -66,8 +66,9 @@ def check(draft: ProjectDraft) -> None:
         speech.phrases(tables)
     for name, passage in draft.knowledge.items():
         report = draft.report(KNOWLEDGE_FOLDER, name)
-        speech.texts(report, ("questions",), passage.questions)
-        speech.texts(report, ("answer",), passage.answer)
+        for key, texts in (("questions", passage.questions), ("answer", passage.answer)):
+            given = texts, speech.languages, frozenset(speech.lost)
+            report.memoize(("speech", report.document.file, key), given, partial(speech.texts, report, (key,), texts))
     for name, questions in draft.questions.items():
         report = draft.report(QUESTIONS_FOLDER, name)
         speech.each(report, ("unanswered",), questions.unanswered)

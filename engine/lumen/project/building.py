@@ -280,8 +280,8 @@ def _each(
     files = found.files if files is None else files
     for file, content in files.items():
         above, _, name = file.rpartition("/")
-        stem, suffix = splitext(name)
-        if above != folder or suffix not in (".yaml", ".yml", MARKDOWN_SUFFIX):
+        stem, suffix = splitext(name) if above == folder else ("", "")
+        if suffix not in (".yaml", ".yml", MARKDOWN_SUFFIX):
             continue
         if suffix == ".yml":
             hint = f"rename it to {stem}.yaml, or delete it"
