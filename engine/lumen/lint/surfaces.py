@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from itertools import product
 from math import isnan
+from operator import itemgetter
 from typing import NamedTuple
 
 from lumen.fuzzy.survey import Slice, SurfaceJump, Survey, asked, grid
@@ -209,7 +210,7 @@ def _extremes(found: Slice, least: float) -> Iterator[tuple[float, float]]:
     low = high = points[0]
     way = 0
     for point in points:
-        low, high = min(low, point, key=_height), max(high, point, key=_height)
+        low, high = min(low, point, key=itemgetter(1)), max(high, point, key=itemgetter(1))
         if way >= 0 and high[1] - point[1] > least:
             if way > 0:
                 yield high
@@ -219,10 +220,6 @@ def _extremes(found: Slice, least: float) -> Iterator[tuple[float, float]]:
                 yield low
             way, low, high = 1, point, point
     yield points[-1]
-
-
-def _height(point: tuple[float, float]) -> float:
-    return point[1]
 
 
 def _rests(controller: ControllerDefinition, found: Slice, report: DocumentReport, seen: SurfaceSamples) -> None:

@@ -18,8 +18,8 @@ from lumen.project.draft import ProjectDraft
 CUT_SHORT = Code("cut-short", "statecharts", WARNING, "an `after` ends a state before its `do` can finish")
 
 
-SECONDS_PER_TEXT, SECONDS_PER_CHARACTER, SECONDS_PER_POSTURE, WALKING_SPEED = 0.4, 0.06, 2.0, 0.1
-"""The recording robot's times per text, per character and per posture [s], and its walking speed [m/s]."""
+SECONDS_PER_TEXT, SECONDS_PER_CHARACTER, WALKING_SPEED = 0.4, 0.06, 0.1
+"""The recording robot's times per text and per character [s], and its walking speed [m/s]."""
 
 
 def check(draft: ProjectDraft) -> None:

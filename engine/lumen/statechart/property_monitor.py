@@ -1,6 +1,6 @@
 """Checks the properties of a run: a safety property at every step, a bounded response at its deadline."""
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from math import inf
 from typing import NamedTuple
@@ -12,8 +12,6 @@ from lumen.language.machines import MachineDefinition
 from lumen.language.nanoseconds import nanoseconds
 from lumen.language.properties import Property
 from lumen.statechart.values import Snapshot
-
-Holds = Callable[[Snapshot], bool]
 
 
 class Violation(NamedTuple):

@@ -140,7 +140,6 @@ class _Stay(urllib.request.HTTPRedirectHandler):
 
     def redirect_request(self, *arguments: Any) -> None:
         """Return None, which rejects the redirect."""
-        return None
 
 
 def post(url: str, body: dict[str, Any]) -> None:
