@@ -197,26 +197,21 @@ class Past:
 
     async def _chart(self, request: Request) -> Response:
         """Return the running behaviour's chart, found by the hash of its files."""
-        view = self.asked(request, Role.SHOW)
-        if not self.is_ours(view):
-            raise DeniedError(400, ELSEWHERE)
-        drawn = await self._jobs.do("chart", self.home(view), str(view.said.get("bundle") or ""))
-        return Response(drawn, headers=NO_STORE, media_type="application/json")
+        return await self._of_running(request, "chart")
 
     async def _skills(self, request: Request) -> Response:
         """Return the skills of the running files, read from their manifests."""
-        view = self.asked(request, Role.SHOW)
-        if not self.is_ours(view):
-            raise DeniedError(400, ELSEWHERE)
-        found = await self._jobs.do("skills", self.home(view), str(view.said.get("bundle") or ""))
+        return await self._of_running(request, "skills")
+
+    async def _of_running(self, request: Request, job: str) -> Response:
+        """Return the answer of a job about the running files."""
+        view = self.own(self.asked(request, Role.SHOW))
+        found = await self._jobs.do(job, self.home(view), str(view.said.get("bundle") or ""))
         return Response(found, headers=NO_STORE, media_type="application/json")
 
     async def _passage(self, request: Request) -> Response:
         """Save an unanswered question with its answer as a passage, which is then checked like any saved file."""
-        self._reception.person(request, Role.AUTHOR)
-        data = await self._reception.posted(request)
-        if not self.is_ours(self._reception.robot(data.get("robot"))):
-            raise DeniedError(400, ELSEWHERE)
+        _, data = await self.posted(request)
         question, answer, language = (str(data.get(key, "")) for key in ("question", "answer", "language"))
         try:
             file = write_passage(self._jobs.root, question, answer, language, _others(data.get("also")))
@@ -226,20 +221,12 @@ class Past:
 
     async def _saying(self, request: Request) -> Response:
         """Save a visitor's sentence as a saying, with the row of `hears` that should have matched it."""
-        self._reception.person(request, Role.AUTHOR)
-        data = await self._reception.posted(request)
-        view = self._reception.robot(data.get("robot"))
-        if not self.is_ours(view):
-            raise DeniedError(400, ELSEWHERE)
+        view, data = await self.posted(request)
         return await self.written("saying", view, *(str(data.get(key, "")) for key in SAID))
 
     async def _story(self, request: Request) -> Response:
         """Save a recorded visit as a story, which `lumen test` plays."""
-        self._reception.person(request, Role.AUTHOR)
-        data = await self._reception.posted(request)
-        view = self._reception.robot(data.get("robot"))
-        if not self.is_ours(view):
-            raise DeniedError(400, ELSEWHERE)
+        view, data = await self.posted(request)
         position, visitor, name = (data.get(key) for key in ("position", "visitor", "name"))
         if not isinstance(position, int) or isinstance(position, bool):
             raise DeniedError(400, "`position` must be the position of an entry of the visit: a whole number")
@@ -260,6 +247,21 @@ class Past:
     def asked(self, request: Request, needs: Role) -> KnownRobot:
         self._reception.person(request, needs)
         return self._reception.robot(request.query_params.get("robot"))
+
+    async def posted(self, request: Request) -> tuple[KnownRobot, dict[str, Any]]:
+        """Return the robot and the data of what an author posted about one of the project's own robots.
+
+        Raises DeniedError if the person is no author, or for any other robot or data.
+        """
+        self._reception.person(request, Role.AUTHOR)
+        data = await self._reception.posted(request)
+        return self.own(self._reception.robot(data.get("robot"))), data
+
+    def own(self, view: KnownRobot) -> KnownRobot:
+        """Return a robot of the console's own project. Raises DeniedError for any other robot."""
+        if not self.is_ours(view):
+            raise DeniedError(400, ELSEWHERE)
+        return view
 
     def is_ours(self, view: KnownRobot) -> bool:
         """Return True for a robot of the console's own project."""

@@ -11,7 +11,7 @@ from starlette.routing import Route
 from lumen.features.console.entry_words import NOTE
 from lumen.features.console.jobs import Jobs
 from lumen.features.console.known_robot import KnownRobot
-from lumen.features.console.past import ELSEWHERE, Past
+from lumen.features.console.past import Past
 from lumen.features.console.people import Role
 from lumen.features.console.requests import DeniedError, Reception, as_json
 from lumen.insight.replay.entries import HOWS
@@ -34,9 +34,7 @@ class Sentences:
 
     async def _found(self, request: Request) -> Response:
         """Return the sentence that an entry's command said, its source, and its places in the files."""
-        view = self._past.asked(request, Role.AUTHOR)
-        if not self._past.is_ours(view):
-            raise DeniedError(400, ELSEWHERE)
+        view = self._past.own(self._past.asked(request, Role.AUTHOR))
         position, id = request.query_params.get("position", ""), request.query_params.get("id", "")
         if not position.isdigit() or len(position) > 18:
             raise DeniedError(400, "`position` must be the position of an entry: a whole number")
@@ -66,11 +64,7 @@ class Sentences:
 
     async def _reworded(self, request: Request) -> Response:
         """Check a new wording, and save it if `write` is true and lint finds no error."""
-        self._reception.person(request, Role.AUTHOR)
-        data = await self._reception.posted(request)
-        view = self._reception.robot(data.get("robot"))
-        if not self._past.is_ours(view):
-            raise DeniedError(400, ELSEWHERE)
+        view, data = await self._past.posted(request)
         if not isinstance(write := data.get("write"), bool):
             raise DeniedError(400, "`write` must be true or false")
         return await self._past.written("wording", view, data, write)
