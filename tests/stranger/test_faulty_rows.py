@@ -67,12 +67,32 @@ LINT = {
     "rule that replaces a part of the draft": (
         RULES,
         f"{CHECK}draft.behaviors = None",
-        "its rule `faulty_code:check` replaced `behaviors` of the draft: a rule reads the draft, and reports findings",
+        "its rule `faulty_code:check` changed `behaviors` of the draft: a rule reads the draft, and reports findings",
     ),
     "rule that deletes a part of the draft": (
         RULES,
         f"{CHECK}del draft.reports",
-        "its rule `faulty_code:check` replaced `reports` of the draft: ",
+        "its rule `faulty_code:check` changed `reports` of the draft: ",
+    ),
+    "rule that changes an entry of the draft": (
+        RULES,
+        f"{CHECK}draft.behaviors['empty'] = None",
+        "its rule `faulty_code:check` changed `behaviors` of the draft: ",
+    ),
+    "rule that empties a part of the draft": (
+        RULES,
+        f"{CHECK}draft.reports.clear()",
+        "its rule `faulty_code:check` changed `reports` of the draft: ",
+    ),
+    "rule that replaces a part of a report": (
+        RULES,
+        f"{CHECK}draft.main.diagnostics = None",
+        "its rule `faulty_code:check` changed `reports.diagnostics` of the draft: ",
+    ),
+    "rule that adds to a set of the draft": (
+        RULES,
+        f"{CHECK}draft.missing.add('behaviors')",
+        "its rule `faulty_code:check` changed `missing` of the draft: ",
     ),
     "rule without a place": (
         RULES,

@@ -77,17 +77,34 @@ def _section_rules(found: ProjectDraft) -> Iterator[tuple[Feature, str]]:
 
 def _apply(feature: Feature, rule: str, found: ProjectDraft) -> None:
     """Run a rule; a fault of a rule that another installed package provides becomes a finding."""
-    returned, before = None, dict(vars(found))
+    returned, distribution = None, distribution_of(feature)
+    before = {name: _copy(value) for name, value in vars(found).items()} if distribution else {}
+    reports = [(report, {**vars(report)}) for report in found.reports.values()] if distribution else []
     with faults_reported(feature, f"its rule `{rule}`", found.loose.append):
         returned = resolve(rule)(found)
-    if distribution := distribution_of(feature):
-        replaced = [name for name, value in before.items() if vars(found).get(name) is not value]
-        vars(found).update((name, before[name]) for name in replaced)
-        faults = [f"replaced `{name}` of the draft: a rule reads the draft, and reports findings" for name in replaced]
+    if distribution:
+        changed = [name for name, value in before.items() if not _same(vars(found).get(name), value)]
+        vars(found).update((name, before[name]) for name in changed)
+        for report, parts in reports:
+            changed += (f"reports.{name}" for name, part in parts.items() if vars(report).get(name) is not part)
+            vars(report).update(parts)
+        faults = [f"changed `{name}` of the draft: a rule reads the draft, and reports findings" for name in changed]
         faults += [f"reported {shown(each)}, which is no finding" for each in _remove_unsound(found)]
         if returned is not None:
             faults.append(f"returned {shown(returned)}: a rule reports its findings, and returns None")
         found.loose += (broken(distribution, f"its rule `{rule}` {fault}") for fault in faults[:1])
+
+
+def _copy(part: object) -> object:
+    """Return a copy of a part of a draft if it is a mapping or a set, else the part itself."""
+    return part.copy() if isinstance(part, dict | set) else part
+
+
+def _same(part: object, before: object) -> bool:
+    """Return whether a part of a draft has the same content as before, as far as `_copy` copies it."""
+    if isinstance(part, dict) and isinstance(before, dict):
+        return part.keys() == before.keys() and all(part[name] is before[name] for name in before)
+    return part == before if isinstance(before, set) else part is before
 
 
 def _remove_unsound(found: ProjectDraft) -> Iterator[object]:
