@@ -232,6 +232,7 @@ def shaken(plan: Plan, arguments: argparse.Namespace) -> Run:
 def finished(command: Sequence[object], group: Group, told: object) -> int:
     """Run the command in the group, and return its exit code; on Ctrl-C it may end its fixtures first."""
     environment = {**os.environ, "GROUPS_ENTERED": " ".join(map(str, group.folders))}
+    environment.pop("PYTHONDONTWRITEBYTECODE", None)  # as in the Makefile: else each process compiles everything again
     words = ["sh", "-c", ENTER, "sh", *command]
     process: Guarded[bytes] = Guarded(words, stdout=told, stderr=STDOUT, cwd=ROOT, env=environment)
     try:
