@@ -6,12 +6,13 @@ import time
 
 import pytest
 
-from lumen.errors import RobotError
+from lumen.errors import RobotError, RobotLostError
 from lumen.features.naoqi.offers import NaoqiRobot
+from lumen.features.naoqi.preparing import OPTIONAL_SERVICES, _protect
 from lumen.features.naoqi.session import address
 from lumen.language.commands import Say
 from lumen.language.projects import Project
-from lumen.ports import Perform
+from lumen.ports import Perform, Sense
 from tests.features.naoqi.conftest import Live
 from tests.features.naoqi.fake import FakeNao
 from tests.features.naoqi.lockstep import Lockstep
@@ -112,6 +113,25 @@ def test_a_connection_lost_in_a_motion_fails_it_and_comes_back(
     assert world.called("killTasksUsingResources") == [(list(project.body.joints),)]
     assert world.called("stopMove") == [()]
     assert sum("the robot is lost" in record.getMessage() for record in caplog.records) == 1
+
+
+def test_a_robot_that_is_lost_while_it_is_taken_over_is_no_robot_without_services(
+    robot: Lockstep, caplog: pytest.LogCaptureFixture
+) -> None:
+    """Each method ends at the first lost call, and does not report what the robot lacks."""
+    session = robot._session
+    session.close()
+    sensors = robot._senses[Sense.JOINT]
+    with caplog.at_level(logging.WARNING):
+        for prepared in (
+            lambda: robot._naoqi_events.listen(session),
+            lambda: _protect(session),
+            lambda: session.find(OPTIONAL_SERVICES),
+            sensors._acquire,
+        ):
+            with pytest.raises(RobotLostError, match="the connection to the robot is lost"):
+                prepared()
+    assert not caplog.records
 
 
 def test_a_robot_that_is_silent_is_lost(robot: Lockstep, live: Live) -> None:

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from functools import partial
 from typing import Any
 
-from lumen.errors import RobotError
+from lumen.errors import RobotFailedError
 from lumen.features.naoqi.session import NaoqiSession
 from lumen.language.events import Event
 from lumen.ports import Tactile
@@ -52,20 +52,23 @@ class NaoqiEvents:
         self._kept: list[Any] = []
 
     def listen(self, session: NaoqiSession) -> None:
-        """Subscribe to all events in a new session; failures are logged."""
+        """Subscribe to all events in a new session; failures are logged.
+
+        Raises RobotLostError if the connection breaks.
+        """
         self._kept = []
         for name in (*self.pressed, FALLEN, *FALLING, FULL):
             event = event_of(name) if name in self.pressed else name
             try:
                 self._kept.append(session.subscribe(event, partial(self._hear, name)))
-            except RobotError as error:
+            except RobotFailedError as error:
                 _log.warning("the robot does not raise `%s`: %s", event, error)
 
         if session.has("ALSoundLocalization"):
             session.post("ALSoundLocalization", "subscribe", "lumen")
             try:
                 self._kept.append(session.subscribe(SOUND, self._locate))
-            except RobotError as error:
+            except RobotFailedError as error:
                 _log.warning("the robot does not look towards sounds: %s", error)
 
     def sounds(self) -> list[tuple[float, float]]:

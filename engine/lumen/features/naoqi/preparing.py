@@ -4,7 +4,7 @@ import logging
 import re
 from collections.abc import Sequence
 
-from lumen.errors import RobotError, RobotModelError, RobotUnreachableError
+from lumen.errors import RobotFailedError, RobotModelError, RobotUnreachableError
 from lumen.features.naoqi.session import NaoqiSession
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.robots import Body
@@ -92,7 +92,7 @@ def _check_joints(session: NaoqiSession, body: Body) -> None:
 def _protect(session: NaoqiSession) -> None:
     """Switch on NAOqi's reflexes: the fall manager, collision protection, and adaptive stiffness.
 
-    Failures are only logged.
+    Failures are only logged. Raises RobotLostError if the connection breaks.
     """
     for method, *arguments in (
         ("setFallManagerEnabled", True),
@@ -103,5 +103,5 @@ def _protect(session: NaoqiSession) -> None:
         try:
             if call.wait(2.0):
                 call.result()
-        except RobotError as error:
+        except RobotFailedError as error:
             _log.warning("the reflex %s could not be switched on: %s", method, error)

@@ -4,8 +4,8 @@ import logging
 import threading
 from collections.abc import Callable
 
-from lumen.errors import RobotError
-from lumen.features.naoqi.session import CONNECTION_LOST, NaoqiSession
+from lumen.errors import RobotError, RobotLostError
+from lumen.features.naoqi.session import NaoqiSession
 from lumen.ports import Reading
 from lumen.upkeep.threads import WatchedThread
 
@@ -72,7 +72,7 @@ class SensePoller:
             self.newest = self._acquire()
         except RobotError as error:
             self.newest = None
-            if self._session.ready and str(error) != CONNECTION_LOST and not self._ending.is_set():
+            if self._session.ready and not isinstance(error, RobotLostError) and not self._ending.is_set():
                 self._tell(str(error))
             return SENSE_RETRY_DELAY
         except Exception as error:  # an unexpected form of answer; the next answer may be valid

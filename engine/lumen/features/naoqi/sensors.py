@@ -5,7 +5,7 @@ from collections import deque
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from lumen.errors import RobotError, SenseError
+from lumen.errors import RobotError, RobotFailedError, SenseError
 from lumen.features.naoqi.hardware import CHARGE, CHARGING, INERTIAL, PLUGGED, device, hardware_of
 from lumen.features.naoqi.session import NaoqiSession
 from lumen.language.robots import Body
@@ -155,12 +155,12 @@ class NaoqiSensors:
         """Return the motors' temperatures [degrees Celsius], the inertial unit's values and the forces under the soles.
 
         Missing values are left out; temperatures are empty unless all are available. Everything is empty, and a warning
-        is logged once, if ALMemory can't be read.
+        is logged once, if ALMemory can't be read. Raises RobotLostError if the connection breaks.
         """
         try:
             found, motors = self._memory(self._felt), len(self._names)
-        except RobotError as error:
-            if self._session.up and not self._numb:
+        except (RobotFailedError, SenseError) as error:
+            if not self._numb:
                 self._numb = True
                 _log.warning(
                     "the robot does not report its temperatures, its balance and the weight on its feet: %s", error

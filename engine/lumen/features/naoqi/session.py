@@ -5,7 +5,7 @@ import threading
 from collections.abc import Callable, Iterable
 from typing import Any
 
-from lumen.errors import RobotError, RobotFailedError, RobotLostError, RobotUnreachableError, SenseError
+from lumen.errors import RobotError, RobotFailedError, RobotLostError, RobotUnreachableError
 from lumen.upkeep.threads import WatchedThread
 
 NAOQI_PORT = 9559
@@ -60,6 +60,11 @@ def plain(error: object) -> str:
     if text in _QI_CONNECTION_LOST:
         return CONNECTION_LOST
     return text.removeprefix("RuntimeError: ")[:MAX_ERROR_LENGTH] or "it gave no reason"
+
+
+def _refused(what: str, error: object) -> str:
+    """Return why NAOqi refused something, `what` in words; `CONNECTION_LOST` if the connection is lost."""
+    return reason if (reason := plain(error)) == CONNECTION_LOST else f"{what}: {reason}"
 
 
 def _error_of(reason: str) -> RobotError:
@@ -141,15 +146,19 @@ class NaoqiSession:
         self._session = session
 
     def find(self, names: Iterable[str]) -> list[str]:
-        """Look up these services for later calls; return the names of missing services."""
+        """Look up these services for later calls; return the names of missing services.
+
+        Raises RobotLostError if the connection breaks.
+        """
         missing = []
         for name in names:
-            future = self._session.service(name, _async=True)
+            future = self._opened().service(name, _async=True)
             future.wait(int(1000 * max(CONNECT_TIMEOUT, self._patience)))
             if not future.isFinished() or future.hasError():
                 missing.append(name)
             else:
                 self._services[name] = future.value()
+        self._opened()
         return missing
 
     def has(self, service: str) -> bool:
@@ -166,7 +175,7 @@ class NaoqiSession:
         try:
             future = getattr(proxy, method)(*arguments, _async=True)
         except (AttributeError, RuntimeError) as error:
-            return NaoqiCall(error=f"{service}.{method} cannot be called: {plain(error)}")
+            return NaoqiCall(error=_refused(f"{service}.{method} cannot be called", error))
         return self._called(future)
 
     def serve(self, name: str, make: Callable[[Any], object]) -> NaoqiCall:
@@ -200,7 +209,7 @@ class NaoqiSession:
         try:
             subscriber.signal.connect(heard)
         except (AttributeError, RuntimeError) as error:
-            raise SenseError(f"`{event}` cannot be subscribed to: {plain(error)}") from error
+            raise _error_of(_refused(f"`{event}` cannot be subscribed to", error)) from error
         return subscriber
 
     def close(self) -> None:
@@ -208,6 +217,12 @@ class NaoqiSession:
         session, self._session, self.ready = self._session, None, False
         if session is not None:
             session.close()
+
+    def _opened(self) -> Any:
+        """Return qi's session. Raises RobotLostError if the connection is lost."""
+        if (session := self._session) is None:
+            raise RobotLostError(CONNECTION_LOST)
+        return session
 
     def _called(self, future: Any) -> NaoqiCall:
         with self._lock:
