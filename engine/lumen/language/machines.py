@@ -259,3 +259,25 @@ def rows_around(machine: MachineDefinition, path: str) -> list[Hears]:
         found += [t.hears for t in state.transitions if t.hears]
         at = state.parent
     return found
+
+
+def is_within(path: str, outer: str) -> bool:
+    """Return True if `path` is the state `outer` or a state in it; the empty path is the whole machine."""
+    return path == outer or not outer or path.startswith(f"{outer}.")
+
+
+def transition_domain(machine: MachineDefinition, transition: Transition) -> str:
+    """Return the path of the innermost compound state around a transition's source and targets.
+
+    The transition does not leave this state, its domain (`getTransitionDomain` in SCXML). The path is empty for the
+    whole machine.
+    """
+    path = transition.source
+    if transition.reenter:
+        path = machine.states[path].parent or ""
+    while path and not (
+        machine.states[path].kind is StateKind.COMPOUND
+        and all(target != path and is_within(target, path) for target in transition.targets)
+    ):
+        path = machine.states[path].parent or ""
+    return path

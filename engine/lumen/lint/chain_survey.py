@@ -3,9 +3,8 @@
 from collections.abc import Sequence
 
 from lumen.language.actions import PlacedAction, Raise, Send, nested
-from lumen.language.machines import MachineDefinition, StateKind, Transition
+from lumen.language.machines import MachineDefinition, StateKind, Transition, transition_domain
 from lumen.lint.events import hears
-from lumen.lint.statecharts import within
 
 MAX_WORK = 30_000
 """The maximum number of states that are visited for a behaviour's chains; further chains are not followed."""
@@ -122,23 +121,6 @@ class ChainSurvey:
             states = self.machine.states
             self._final[path] = [p for p in (*states[path].children, path) if states[p].kind is StateKind.FINAL]
         return self._final[path]
-
-
-def transition_domain(machine: MachineDefinition, transition: Transition) -> str:
-    """Return the path of the innermost compound state around a transition's source and targets.
-
-    The transition does not leave this state, its domain (`getTransitionDomain` in SCXML). The path is empty for the
-    whole machine.
-    """
-    path = transition.source
-    if transition.reenter:
-        path = machine.states[path].parent or ""
-    while path and not (
-        machine.states[path].kind is StateKind.COMPOUND
-        and all(target != path and within(target, path) for target in transition.targets)
-    ):
-        path = machine.states[path].parent or ""
-    return path
 
 
 def sends_event(block: Sequence[PlacedAction], to: str = "") -> bool:

@@ -5,9 +5,9 @@ from dataclasses import dataclass, field
 
 from lumen.language.actions import Raise, Send, nested
 from lumen.language.diagnostics import WARNING, Code, NodePath
-from lumen.language.machines import MachineDefinition, State, StateKind, Transition
+from lumen.language.machines import MachineDefinition, State, StateKind, Transition, is_within
 from lumen.lint.endless_chains import ENDLESS_CHAIN
-from lumen.lint.statecharts import ALWAYS_LOOP, reachable, within
+from lumen.lint.statecharts import ALWAYS_LOOP, reachable
 from lumen.lint.walk import action_sites
 from lumen.project.document_report import DocumentReport
 from lumen.project.draft import ProjectDraft
@@ -102,13 +102,13 @@ class _Graph:
         """Add a transition: it also leaves the regions next to its source, and enters those next to its target."""
         self.join(("in", source), ("to", target))
         for path in self.above(source):
-            if self.machine.states[path].kind is StateKind.PARALLEL and not within(target, path):
+            if self.machine.states[path].kind is StateKind.PARALLEL and not is_within(target, path):
                 self.join(("in", path), ("to", target))
         for path in self.above(target):
             state = self.machine.states[path]
-            if state.kind is StateKind.PARALLEL and not within(source, path):
+            if state.kind is StateKind.PARALLEL and not is_within(source, path):
                 for child in state.children:
-                    if not within(target, child):
+                    if not is_within(target, child):
                         self.join(("in", source), ("to", child))
 
     def above(self, path: str) -> Iterator[str]:
@@ -215,7 +215,7 @@ class _Ways:
                 transition
                 for path in self.below(parallel)
                 for transition in self.machine.states[path].transitions
-                if any(not within(target, parallel.path) for target in transition.targets)
+                if any(not is_within(target, parallel.path) for target in transition.targets)
             ]
         return self.exits[parallel.path]
 

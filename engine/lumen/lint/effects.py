@@ -2,10 +2,9 @@
 
 from lumen.language.commands import PlaySound
 from lumen.language.diagnostics import WARNING, Code, NodePath
-from lumen.language.machines import MachineDefinition, State, StateKind, Transition
+from lumen.language.machines import MachineDefinition, State, StateKind, Transition, is_within
 from lumen.language.motions import MotionDefinition
 from lumen.lint.lookups import first
-from lumen.lint.statecharts import within
 from lumen.lint.walk import action_sites
 from lumen.project.document_report import DocumentReport
 from lumen.project.draft import ProjectDraft
@@ -60,7 +59,7 @@ def _ways(machine: MachineDefinition, report: DocumentReport) -> None:
                 message = "`reenter` has no effect without a `target`: the state is not left"
                 hint = f"write `target: .` to restart `{state.name or 'the behaviour'}`, or delete `reenter`"
                 report(NO_EFFECT, path, message, hint, key=True)
-            elif transition.reenter and not any(within(target, state.path) for target in transition.targets):
+            elif transition.reenter and not any(is_within(target, state.path) for target in transition.targets):
                 message = f"`reenter` has no effect here: a target outside `{state.name}` leaves it anyway"
                 report(NO_EFFECT, path, message, "delete it", key=True)
         written = report.document.find(state.where) or {}

@@ -4,13 +4,12 @@ from collections.abc import Collection
 from itertools import islice
 
 from lumen.language.diagnostics import WARNING, Code, NodePath, Related
-from lumen.language.machines import Hears, Transition
+from lumen.language.machines import Hears, Transition, is_within
 from lumen.lint.caught import row_phrases
 from lumen.lint.events import hears
 from lumen.lint.heard_rows import HeardRows, SaidPhrase, SaidRow, hearing_behaviors, remembered, shown
 from lumen.lint.naming import looked_up
 from lumen.lint.speech import SHADOWED_ANSWER
-from lumen.lint.statecharts import within
 from lumen.lint.word_tables import declaring_report
 from lumen.project.draft import ProjectDraft
 from lumen.talk.hearing import HEARD, Taken, hearing_of
@@ -91,12 +90,12 @@ class _Examples(HeardRows):
         else:
             for example, taker in taken.values():
                 self.shadowed(row, example, taker)
-            self.within(row)
+            self.is_within(row)
 
-    def within(self, row: SaidRow) -> None:
+    def is_within(self, row: SaidRow) -> None:
         """Report phrases of a row that match a row of an inner state."""
         own = set(row.hears.names)
-        below = [path for path in self.by_state if within(path, row.state.path) and path != row.state.path]
+        below = [path for path in self.by_state if is_within(path, row.state.path) and path != row.state.path]
         rivals = {name for path in below for other in self.by_state[path] for name in other.hears.names} - own
         told: set[NodePath] = set()
         for example in self.examples(row.hears.names) if rivals else ():

@@ -1,8 +1,7 @@
 """Transitions that lead from outside into a state with `for`, where no entry of its list is selected yet."""
 
 from lumen.language.diagnostics import ERROR, Code
-from lumen.language.machines import MachineDefinition, StateKind
-from lumen.lint.statecharts import within
+from lumen.language.machines import MachineDefinition, StateKind, is_within
 from lumen.project.document_report import DocumentReport
 from lumen.project.draft import ProjectDraft
 
@@ -26,8 +25,8 @@ def _jumps(machine: MachineDefinition, loops: list[str], report: DocumentReport)
     for state in machine.states.values():
         for transition in state.transitions:
             for target in transition.targets:
-                into = [loop for loop in loops if target != loop and within(target, loop)]
-                past = [loop for loop in into if not within(transition.source, loop)]
+                into = [loop for loop in loops if target != loop and is_within(target, loop)]
+                past = [loop for loop in into if not is_within(transition.source, loop)]
                 if past and machine.states[target].kind is not StateKind.HISTORY:
                     outer, loop = machine.states[past[0]], machine.states[past[0]].for_each
                     assert loop

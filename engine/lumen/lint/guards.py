@@ -8,10 +8,9 @@ from lumen.expressions.parser import MAX_REMEMBERED_TREES
 from lumen.expressions.tree import ExpressionNode, FunctionCall, Literal, Logic
 from lumen.language.actions import Expression
 from lumen.language.diagnostics import INFO, WARNING, Code, NodePath
-from lumen.language.machines import MachineDefinition, State, StateKind, Transition
+from lumen.language.machines import MachineDefinition, State, StateKind, Transition, is_within
 from lumen.lint.events import hears
 from lumen.lint.logic import always, implies, never, tree
-from lumen.lint.statecharts import within
 from lumen.lint.walk import expression_sites
 from lumen.lint.word_tables import is_taken
 from lumen.project.document_report import DocumentReport
@@ -107,7 +106,7 @@ def _taken_within(machine: MachineDefinition, state: State, report: DocumentRepo
     leaves = [s for s in inner if s.kind in (StateKind.ATOMIC, StateKind.FINAL)]
     for end in ends if len(leaves) <= MAX_COMPARED_CANDIDATES else ():
         takers = [
-            next((t for s in inner if within(leaf.path, s.path) for t in s.transitions if _takes(t, end)), None)
+            next((t for s in inner if is_within(leaf.path, s.path) for t in s.transitions if _takes(t, end)), None)
             for leaf in leaves
         ]
         first = takers[0] if takers else None

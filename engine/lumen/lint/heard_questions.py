@@ -6,10 +6,9 @@ from functools import cached_property
 from lumen.language.actions import AskQuestion, PlacedAction, nested
 from lumen.language.diagnostics import WARNING, Code, Related
 from lumen.language.folders import KNOWLEDGE_FOLDER
-from lumen.language.machines import State, StateKind
+from lumen.language.machines import State, StateKind, is_within
 from lumen.lint.buttons import together
 from lumen.lint.heard_rows import HeardRows, SaidRow, hearing_behaviors, remembered, shown
-from lumen.lint.statecharts import within
 from lumen.lint.word_tables import WrittenPhrase, declaring_report, written_phrases
 from lumen.project.draft import ProjectDraft
 from lumen.talk.finder import Find
@@ -115,7 +114,7 @@ class _Questions(HeardRows):
         """Return the hint for a question that matches a row: add a row `asked NAME`, or change the row's phrase."""
         name, words = find.entry.name, self.words(question.text, find)
         asked = hearing_of(self.machine).read(question.text).is_asked(find)
-        if asked and (within(row.state.path, state.path) or within(state.path, row.state.path)):
+        if asked and (is_within(row.state.path, state.path) or is_within(state.path, row.state.path)):
             return f"add a row `asked {name}` to {shown(row.state)} with the same target as `else` of {shown(state)}"
         keys = ("phrases", "answers")
         if not any(

@@ -8,10 +8,9 @@ from itertools import islice
 from typing import NamedTuple
 
 from lumen.language.diagnostics import Diagnostic, NodePath
-from lumen.language.machines import Hears, MachineDefinition, State, StateKind, Transition
+from lumen.language.machines import Hears, MachineDefinition, State, StateKind, Transition, is_within
 from lumen.lint.events import descriptor_path
 from lumen.lint.naming import heard_rows
-from lumen.lint.statecharts import within
 from lumen.lint.word_tables import WrittenPhrase, declaring_report, written_phrases
 from lumen.project.document_report import DocumentReport
 from lumen.project.draft import ProjectDraft
@@ -166,12 +165,12 @@ class HeardRows:
 
     def between(self, leaf: str, outer: str) -> list[State]:
         """Return a state and its ancestors, from the inside out, up to but not including `outer`."""
-        return [state for state in self.around(leaf) if within(state.path, outer) and state.path != outer]
+        return [state for state in self.around(leaf) if is_within(state.path, outer) and state.path != outer]
 
     def leaves(self, outer: str) -> list[str]:
         """Return the paths of the atomic states in a state; only its own path if it is atomic."""
         states = self.machine.states.values()
-        return [state.path for state in states if state.kind is StateKind.ATOMIC and within(state.path, outer)]
+        return [state.path for state in states if state.kind is StateKind.ATOMIC and is_within(state.path, outer)]
 
 
 def hearing_behaviors(draft: ProjectDraft) -> list[str]:

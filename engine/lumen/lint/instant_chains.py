@@ -18,10 +18,9 @@ from lumen.language.actions import (
     Wait,
     nested,
 )
-from lumen.language.machines import MachineDefinition, State, StateKind, Transition
+from lumen.language.machines import MachineDefinition, State, StateKind, Transition, is_within
 from lumen.lint.chain_survey import ChainSurvey, UncertainError, sends_event
 from lumen.lint.logic import tree
-from lumen.lint.statecharts import within
 
 MAX_STEPS = 1000
 """The maximum number of a chain's events and transitions that are followed, as in the engine."""
@@ -161,7 +160,7 @@ class InstantChain:
         for transition in transitions:
             self.survey.spend(len(kept) // STATES_PER_WORK)
             rivals = [other for other in kept if self._conflict(transition, other)]
-            if all(transition.source != o.source and within(transition.source, o.source) for o in rivals):
+            if all(transition.source != o.source and is_within(transition.source, o.source) for o in rivals):
                 kept = [*(other for other in kept if other not in rivals), transition]
         transitions = kept
         self.taken += [(transition, event) for transition in transitions]
@@ -177,18 +176,18 @@ class InstantChain:
         if not (one.targets and other.targets):
             return False
         inner, outer = self.survey.domain(one), self.survey.domain(other)
-        return within(inner, outer) or within(outer, inner)
+        return is_within(inner, outer) or is_within(outer, inner)
 
     def _leave(self, domain: str) -> None:
         self.survey.spend((len(self.active) + len(self.unknown) + len(self.timers)) // STATES_PER_WORK)
-        leaving = self._in_order(path for path in self.active if path != domain and within(path, domain))
+        leaving = self._in_order(path for path in self.active if path != domain and is_within(path, domain))
         for state in reversed(leaving):
             self._note(state.exit)
         left = {state.path for state in leaving}
         self.active -= left
         self.begun -= left
         self.timers = [timer for timer in self.timers if isinstance(timer, str) or timer.source not in left]
-        regions = {region for region in self.unknown if within(region, domain)}
+        regions = {region for region in self.unknown if is_within(region, domain)}
         if any(map(self.survey.speaks_at_exit, regions)):
             raise UncertainError
         self.unknown -= regions

@@ -3,8 +3,7 @@
 from itertools import islice
 
 from lumen.language.diagnostics import WARNING, Code
-from lumen.language.machines import MachineDefinition, StateKind, Transition
-from lumen.lint.statecharts import within
+from lumen.language.machines import MachineDefinition, StateKind, Transition, is_within
 from lumen.project.document_report import DocumentReport
 from lumen.project.draft import ProjectDraft
 
@@ -48,7 +47,7 @@ def _crossing(
     path: str | None = transition.source
     while path is not None:
         parallel = machine.states[path]
-        inside = [target for target in transition.targets if target != path and within(target, path)]
+        inside = [target for target in transition.targets if target != path and is_within(target, path)]
         if inside and len(inside) == len(transition.targets):
             break
         path = parallel.parent

@@ -37,11 +37,6 @@ def check(draft: ProjectDraft) -> None:
         _loops(machine, report)
 
 
-def within(path: str, other: str) -> bool:
-    """Return whether `path` is the state `other`, or its descendant."""
-    return path == other or not other or path.startswith(f"{other}.")
-
-
 def reachable(machine: MachineDefinition, begin: str = "") -> set[str]:
     """Return the paths of all states that some sequence of events could enter from `begin`; guards are ignored."""
     found: set[str] = set()

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from lumen.language.machines import Invoke, MachineDefinition, State, StateKind, Transition
+from lumen.language.machines import Invoke, MachineDefinition, State, StateKind, Transition, is_within
 from lumen.run.captions import caption, invocation
 
 _HEAD = """\
@@ -79,7 +79,7 @@ class _DotDrawing:
         """Return an arrow, clipped at the frame of each cluster that does not contain its other end."""
         looks = [look] if look else []
         for end, path, other in (("ltail", source, target), ("lhead", target, source)):
-            holds = other == path or not path or other.startswith(f"{path}.")
+            holds = is_within(other, path)
             framed = self.machine.states[path].children or self.machine.states[path].invoke
             if framed and not holds and not begins:
                 looks.append(f"{end}=cluster_{self.ids[path]}")

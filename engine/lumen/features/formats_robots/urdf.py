@@ -1,6 +1,6 @@
 """Reads the joints and links of a robot's URDF (wiki.ros.org/urdf/XML), without transmissions and simulators' tags."""
 
-from lumen.features.formats_robots.orientation import AXES, NestedFrame, Numbers, Quaternion, euler, rotated
+from lumen.features.formats_robots.orientation import AXES, NestedFrame, Numbers, euler, rotated
 from lumen.features.formats_robots.parts import ModelJoint, RobotModel, follows
 from lumen.project.formats.conversion_findings import ConversionFindings
 from lumen.project.formats.known import FormatTable, Known
@@ -157,7 +157,7 @@ class _UrdfReader:
         if leader and not equal:
             self.driven[name] = next(joint.of("mimic"))
         return ModelJoint(
-            name, next(joint.of("child")).get("link"), joint.place, frame.place, _turned(frame.turned, axis_here),
+            name, next(joint.of("child")).get("link"), joint.place, frame.place, rotated(frame.turned, axis_here),
             low if kind == "revolute" else None, high if kind == "revolute" else None, speed, effort, leader,
         )  # fmt: skip
 
@@ -195,7 +195,3 @@ class _UrdfReader:
                 mimic.place, f"the `<mimic>` of `{joint.get('name')}` names no joint", 'write `<mimic joint="…"/>`'
             )
         return mimic.get("joint"), factor in (None, 1.0) and offset in (None, 0.0)
-
-
-def _turned(turned: Quaternion, axis: tuple[float, float, float]) -> tuple[float, float, float]:
-    return rotated(turned, axis)

@@ -7,7 +7,7 @@ from typing import Literal
 from lumen.insight.exploration.search import SearchNode, StateSpaceSearch, leaves, reaching
 from lumen.insight.exploration.stimuli import Stimulus
 from lumen.language.diagnostics import NodePath
-from lumen.language.machines import MachineDefinition, StateKind
+from lumen.language.machines import MachineDefinition, StateKind, is_within
 from lumen.statechart.nesting import ID_SEPARATOR, innermost_names
 
 FindingKind = Literal["dead-end", "no-way-back", "restless", "property"]
@@ -106,7 +106,7 @@ def _cheapest(machine: MachineDefinition, nodes: list[SearchNode], region: str =
     found: dict[str, SearchNode] = {}
     for node in sorted(nodes, key=lambda s: s.cost):
         paths = list(leaves(machine, node.names))
-        inside = [p for p in paths if not region or p == region or p.startswith(f"{region}.")]
+        inside = [p for p in paths if is_within(p, region)]
         for path in inside or paths:
             found.setdefault(path, node)
     return found

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Mapping
 
-from lumen.language.machines import MachineDefinition, State, StateKind
+from lumen.language.machines import MachineDefinition, State, StateKind, is_within
 
 
 def history_uses(machine: MachineDefinition) -> Mapping[str, frozenset[str]]:
@@ -21,7 +21,7 @@ def _uses(machine: MachineDefinition, history: State) -> frozenset[str]:
     found = {path for path, targets in leads.items() if history.path in targets}
     while more := {path for path, targets in leads.items() if path not in found and targets & found}:
         found |= more
-    return frozenset(machine.states[path].name for path in found if not _within(path, home))
+    return frozenset(machine.states[path].name for path in found if not is_within(path, home))
 
 
 def _led_to(machine: MachineDefinition, state: State, home: str) -> Iterator[str]:
@@ -32,10 +32,6 @@ def _led_to(machine: MachineDefinition, state: State, home: str) -> Iterator[str
             if kind is StateKind.HISTORY:
                 yield target
                 target = machine.states[target].parent or ""
-            if not _within(target, home):
-                yield from (path for path in machine.states if _within(path, target) and not _within(path, home))
-                yield from (path for path in machine.states if path and _within(target, path))
-
-
-def _within(path: str, home: str) -> bool:
-    return not home or path == home or path.startswith(f"{home}.")
+            if not is_within(target, home):
+                yield from (path for path in machine.states if is_within(path, target) and not is_within(path, home))
+                yield from (path for path in machine.states if path and is_within(target, path))

@@ -5,7 +5,7 @@ differ only in that number are one. A history restores only what it remembers.
 """
 
 from collections.abc import Iterator, Mapping
-from itertools import islice, pairwise
+from itertools import pairwise
 
 from lumen.expressions import ExpressionNode, names, unparse
 from lumen.expressions.function_table import clock_functions
@@ -14,7 +14,7 @@ from lumen.expressions.tree import Binary, FieldAccess, FunctionCall, Literal, L
 from lumen.insight.exploration.expression_uses import of_state, relevant, tree_of
 from lumen.insight.exploration.history_uses import history_uses
 from lumen.language.actions import Assign, ComputedValue, Expression, PlacedAction, context_key
-from lumen.language.machines import MachineDefinition, State, StateKind, Transition
+from lumen.language.machines import MachineDefinition, State, StateKind, Transition, transition_domain
 from lumen.talk.hearing import always_caught
 
 
@@ -126,7 +126,8 @@ class Liveness:
     def _successors(self, leaf: str) -> Iterator[tuple[str, frozenset[str]]]:
         """Yield the leaves that transitions of a leaf or around it can enter, each with the keys overwritten then."""
         for transition in (tr for path in self._around(leaf) for tr in self._machine.states[path].transitions):
-            killed, domain = assigned_by(transition, self._caught(transition)), self._domain(transition)
+            killed = assigned_by(transition, self._caught(transition))
+            domain = transition_domain(self._machine, transition)
             for target in transition.targets:
                 for after in sorted(self._entered(target, domain)):
                     yield after, self._kills[after] | killed
@@ -136,19 +137,6 @@ class Liveness:
     def _caught(self, transition: Transition) -> frozenset[str]:
         """Return the keys that `heard` always has in the actions of a row of `hears`."""
         return always_caught(self._machine, transition.hears) if transition.hears else frozenset()
-
-    def _domain(self, transition: Transition) -> str:
-        """Return the path of the innermost state that contains all states left and entered; empty for the machine.
-
-        This is `getTransitionDomain` of SCXML.
-        """
-        source = self._machine.states[transition.source]
-        inside = source.kind is StateKind.COMPOUND and all(_within(t, source.path) for t in transition.targets)
-        if inside and not transition.reenter:
-            return source.path
-        around = islice(self._around(source.path), 1, None)
-        compound = (path for path in around if self._machine.states[path].kind is StateKind.COMPOUND)
-        return next((path for path in compound if all(_within(t, path) for t in transition.targets)), "")
 
     def _entered(self, target: str, domain: str) -> set[str]:
         """Return the leaves below a target, and those of parallel regions that are entered with it in that domain.
@@ -192,8 +180,3 @@ class Liveness:
         while place is not None:
             yield place
             place = self._machine.states[place].parent
-
-
-def _within(path: str, outer: str) -> bool:
-    """Return whether a state is below another."""
-    return path != outer and (not outer or path.startswith(f"{outer}."))

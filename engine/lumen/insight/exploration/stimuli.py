@@ -15,7 +15,7 @@ from lumen.language.added_verbs import usual_result
 from lumen.language.commands import BodyCommand, GoTo
 from lumen.language.controllers import CONTROLLER_EVENT
 from lumen.language.events import ARRIVED, Event
-from lumen.language.machines import Hears, MachineDefinition, Transition
+from lumen.language.machines import Hears, MachineDefinition, Transition, is_within
 from lumen.statechart import Snapshot, Timer
 from lumen.statechart.command_ids import outer_id
 from lumen.statechart.compiled_machine import CompiledMachine, compiled
@@ -270,15 +270,11 @@ def _next(snapshot: Snapshot) -> Iterator[Timer]:
     a shorter delay ends before a longer one.
     """
     for timer in snapshot.timers:
-        around = [t for t in snapshot.timers if t.kind == "after" and _within(timer.state, t.state)]
+        around = [t for t in snapshot.timers if t.kind == "after" and is_within(timer.state, t.state)]
         if timer.kind == "send" or not any(t.delay_ns < timer.delay_ns for t in around):
             yield timer
     for owner, child in snapshot.invoked.items():
         yield from (timer._replace(id=outer_id(timer.id, owner)) for timer in _next(child.snapshot))
-
-
-def _within(path: str, outer: str) -> bool:
-    return not outer or path == outer or path.startswith(f"{outer}.")
 
 
 def _awaited(snapshot: Snapshot) -> Iterator[str]:

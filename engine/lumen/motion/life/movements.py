@@ -7,7 +7,7 @@ from typing import NamedTuple
 from zlib import crc32
 
 from lumen.language.life import STILL, Asides, Blinks, Glances, LifeStyle, Nods, Settles
-from lumen.language.machines import MachineDefinition
+from lumen.language.machines import MachineDefinition, is_within
 
 
 @lru_cache(4096)
@@ -96,7 +96,7 @@ def style_name(machine: MachineDefinition, configuration: Collection[str]) -> st
     """
     active = [path for path, state in machine.states.items() if not path or state.name in configuration]
     saying = [path for path in active if machine.states[path].life]
-    inner = [path for path in saying if not any(_within(other, path) for other in saying)]
+    inner = [path for path in saying if not any(other != path and is_within(other, path) for other in saying)]
     styles = [machine.states[path].life for path in inner]
     return STILL if STILL in styles or not styles else styles[0]
 
@@ -104,10 +104,6 @@ def style_name(machine: MachineDefinition, configuration: Collection[str]) -> st
 def gestures_wanted(machine: MachineDefinition, configuration: Collection[str]) -> bool:
     """Return True unless an active state has `gestures: none`."""
     return not any(state.gestures for path, state in machine.states.items() if not path or state.name in configuration)
-
-
-def _within(path: str, outer: str) -> bool:
-    return path != outer and (not outer or path.startswith(f"{outer}."))
 
 
 TURN_TIME = 0.5

@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterable
 
 from lumen.errors import UsageError
 from lumen.language.diagnostics import did_you_mean
-from lumen.language.machines import MachineDefinition, State, StateKind
+from lumen.language.machines import MachineDefinition, State, StateKind, is_within
 from lumen.run.captions import invocation
 from lumen.run.diagrams.diagram import Diagram, StateBox
 from lumen.run.diagrams.transition_rows import made, rows_of, short_name
@@ -104,8 +104,8 @@ def _arrows(machine: MachineDefinition, within: str = "") -> tuple[tuple[str, st
     for state in machine.states.values():
         for target in (target for t in state.transitions for target in t.targets):
             end = _drawn(machine, target)
-            nested = any(_inside(one, other) for one, other in ((state.path, end), (end, state.path)))
-            if not nested and end not in hubs and _inside(state.path, within) and _inside(end, within):
+            nested = any(is_within(one, other) for one, other in ((state.path, end), (end, state.path)))
+            if not nested and end not in hubs and is_within(state.path, within) and is_within(end, within):
                 found[state.path or machine.id, end] = None
     return tuple(found)
 
@@ -120,11 +120,6 @@ def _led_here(machine: MachineDefinition) -> Counter[str]:
     """Return the number of other states that lead to each state, by path."""
     pairs = {(s.path, _drawn(machine, e)) for s in machine.states.values() for t in s.transitions for e in t.targets}
     return Counter(end for start, end in pairs if start != end)
-
-
-def _inside(path: str, other: str) -> bool:
-    """Return whether a state is `other` or inside it; an empty `other` contains every state."""
-    return not other or path == other or path.startswith(f"{other}.")
 
 
 def _above(machine: MachineDefinition, state: State) -> Iterable[str]:
