@@ -4,6 +4,7 @@ import hashlib
 import os
 import sys
 from collections.abc import Iterator
+from contextlib import suppress
 from functools import cache
 from importlib.util import find_spec
 from pathlib import Path
@@ -29,8 +30,7 @@ def files_hash(*folders: Path) -> str:
     digest = hashlib.sha256()
     others = distributions()
     for folder in (*folders, *(place for each in others for place in _places(each))):
-        for path, what, changed in sorted(listed(folder)):
-            digest.update(os.fsencode(f"{folder} {path} {what} {changed}\n"))
+        digest.update(os.fsencode(f"{folder}\n{sorted(listed(folder))}"))
     if others:  # one of them may need a distribution that is installed later
         digest.update(os.fsencode(repr((others, *metadata_folders()))))
     return digest.hexdigest()
@@ -85,19 +85,17 @@ def listed(folder: Path) -> Iterator[tuple[str, str, int]]:
     if folder.is_file():
         status = folder.stat()
         yield ".", f"{status.st_size} {status.st_mtime_ns} ", status.st_ctime_ns
-    yield from _below(str(folder), "")
-
-
-def _below(folder: str, within: str) -> Iterator[tuple[str, str, int]]:
-    try:
-        entries = list(os.scandir(folder))
-    except OSError:
-        return
-    for entry in entries:
-        if entry.is_dir(follow_symlinks=False):
-            if entry.name != "__pycache__":
-                yield from _below(entry.path, f"{within}{entry.name}/")
-        else:
-            status = entry.stat(follow_symlinks=False)
-            leads = os.readlink(entry.path) if entry.is_symlink() else ""
-            yield within + entry.name, f"{status.st_size} {status.st_mtime_ns} {leads}", status.st_ctime_ns
+    ahead = [(str(folder), "")]
+    while ahead:
+        here, within = ahead.pop()
+        entries = list[os.DirEntry[str]]()
+        with suppress(OSError):
+            entries += os.scandir(here)
+        for entry in entries:
+            if entry.is_dir(follow_symlinks=False):
+                if entry.name != "__pycache__":
+                    ahead.append((entry.path, f"{within}{entry.name}/"))
+            else:
+                status = entry.stat(follow_symlinks=False)
+                leads = os.readlink(entry.path) if entry.is_symlink() else ""
+                yield within + entry.name, f"{status.st_size} {status.st_mtime_ns} {leads}", status.st_ctime_ns

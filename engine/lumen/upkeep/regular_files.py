@@ -8,6 +8,8 @@ from pathlib import Path
 from lumen.upkeep.own_folders import NO_LINK
 
 MEGABYTE = 1_000_000
+FURTHER = 1 << 16
+"""The size of the pieces in which the rest of a file is read that is larger than the system says [bytes]."""
 
 
 def read_regular(path: Path, most: int, *, follow: bool = True) -> bytes:
@@ -19,13 +21,14 @@ def read_regular(path: Path, most: int, *, follow: bool = True) -> bytes:
     flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
     handle = os.open(path, flags if follow else flags | NO_LINK)
     try:
-        mode = os.fstat(handle).st_mode
-        if stat.S_ISDIR(mode):
+        status = os.fstat(handle)
+        if stat.S_ISDIR(status.st_mode):
             raise OSError(errno.EISDIR, "it is a folder")
-        if not stat.S_ISREG(mode):
+        if not stat.S_ISREG(status.st_mode):
             raise OSError(errno.EINVAL, "it is a device or a pipe, not a file")
-        with os.fdopen(handle, "rb", closefd=False) as file:
-            content = file.read(most + 1)
+        content = os.read(handle, min(status.st_size, most) + 1)
+        while content and len(content) <= most and (more := os.read(handle, FURTHER)):  # until the end, if it has grown
+            content += more
     finally:
         os.close(handle)
     if len(content) > most:
