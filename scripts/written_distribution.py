@@ -1,13 +1,19 @@
 """Distributions written into a folder as an installer would leave them, and used from there by this process."""
 
 import sys
+import threading
+import time
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import cache
 from importlib import invalidate_caches
 from pathlib import Path
-from types import ModuleType
+from traceback import walk_stack
+from types import CodeType, ModuleType
 from typing import Any
+
+PATIENCE = 60.0
+"""The time that other threads have to leave the functions with caches [s]; only one that hangs needs it."""
 
 
 def write_distribution(folder: Path, name: str, manifest: str, files: Mapping[str, str], version: str = "1.0") -> None:
@@ -43,18 +49,36 @@ def on_path(folder: Path) -> Iterator[None]:
 def _forget() -> None:
     """Let Lumen find its features again: clear the caches of its functions.
 
-    The process that waits to check files has the features of its own start, so it ends.
+    A thread that an earlier test has left may be inside such a function, and store what it found on the path of before:
+    the caches are cleared again when no thread is. The process that waits to check files has the features of its own
+    start, so it ends.
     """
     invalidate_caches()
     if idle := sys.modules.get("lumen.run.reload.idle_process"):
         idle.end_idle()
-    for name, module in list(sys.modules.items()):
-        if name.partition(".")[0] == "lumen":
-            for function in _cached(module):
-                function.cache_clear()
+    modules = [module for name, module in list(sys.modules.items()) if name.partition(".")[0] == "lumen"]
+    functions = [function for module in modules for function in _cached(module)]
+    _clear(functions)
+    codes = {function.__wrapped__.__code__ for function in functions}
+    deadline = time.monotonic() + PATIENCE
+    while not codes.isdisjoint(_running()) and time.monotonic() < deadline:
+        time.sleep(0.001)
+    _clear(functions)
+
+
+def _clear(functions: Sequence[Any]) -> None:
+    for function in functions:
+        function.cache_clear()
+
+
+def _running() -> Iterator[CodeType]:
+    """Iterate over the code that other threads are executing, with that of all callers."""
+    for thread, frame in sys._current_frames().items():
+        if thread != threading.get_ident():
+            yield from (each.f_code for each, _ in walk_stack(frame))
 
 
 @cache
 def _cached(module: ModuleType) -> Sequence[Any]:
     """Return the functions of a module with a cache; a function that the module imported is one of another module."""
-    return [value for value in vars(module).values() if hasattr(value, "cache_clear")]
+    return [value for value in list(vars(module).values()) if hasattr(value, "cache_clear")]

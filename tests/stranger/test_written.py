@@ -1,0 +1,34 @@
+"""Distributions that a test writes are found at once, whatever earlier tests have left."""
+
+import threading
+
+import pytest
+
+from lumen import distributions
+from lumen.feature import features, finding
+from tests.stranger.installing import Installed
+from tests.waiting import HANG
+
+
+def test_a_thread_of_an_earlier_test_does_not_hide_a_distribution(
+    installed: Installed, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    read, inside, awaited = distributions._text, threading.Event(), threading.Event()
+
+    def slow(folder: str, name: str) -> str:
+        if threading.current_thread() is left:
+            inside.set()
+            awaited.wait(HANG)
+        return read(folder, name)
+
+    left = threading.Thread(target=features)
+    monkeypatch.setattr(distributions, "_text", slow)
+    monkeypatch.setattr("time.sleep", lambda _: awaited.set())  # the thread goes on when it is waited for
+    distributions.distributions.cache_clear()
+    finding.found.cache_clear()
+    left.start()
+    assert inside.wait(HANG)
+    installed.write("late", "from lumen.feature import *\n\nFEATURE = Feature(name='late')\n")
+    awaited.set()
+    left.join()
+    assert "late" in {feature.name for feature in features()}
