@@ -61,7 +61,7 @@ def _forget() -> None:
     _clear(functions)
     codes = {function.__wrapped__.__code__ for function in functions}
     deadline = time.monotonic() + PATIENCE
-    while not codes.isdisjoint(_running()) and time.monotonic() < deadline:
+    while not codes.isdisjoint(_running() | _running()) and time.monotonic() < deadline:
         time.sleep(0.001)
     _clear(functions)
 
@@ -71,11 +71,15 @@ def _clear(functions: Sequence[Any]) -> None:
         function.cache_clear()
 
 
-def _running() -> Iterator[CodeType]:
-    """Iterate over the code that other threads are executing, with that of all callers."""
-    for thread, frame in sys._current_frames().items():
-        if thread != threading.get_ident():
-            yield from (each.f_code for each, _ in walk_stack(frame))
+def _running() -> set[CodeType]:
+    """Return the code that other threads are executing, with that of all callers."""
+    usual = sys.getswitchinterval()
+    sys.setswitchinterval(1.0)  # a function that returns meanwhile would hide its callers
+    try:
+        frames = {thread: frame for thread, frame in sys._current_frames().items() if thread != threading.get_ident()}
+        return {each.f_code for frame in frames.values() for each, _ in walk_stack(frame)}
+    finally:
+        sys.setswitchinterval(usual)
 
 
 @cache

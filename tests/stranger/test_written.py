@@ -1,6 +1,8 @@
 """Distributions that a test writes are found at once, whatever earlier tests have left."""
 
 import threading
+import time
+from collections.abc import Callable
 
 import pytest
 
@@ -21,9 +23,13 @@ def test_a_thread_of_an_earlier_test_does_not_hide_a_distribution(
             awaited.wait(HANG)
         return read(folder, name)
 
+    def waited(seconds: float, sleep: Callable[[float], None] = time.sleep) -> None:
+        awaited.set()  # the thread goes on when it is waited for
+        sleep(seconds)
+
     left = threading.Thread(target=features)
     monkeypatch.setattr(distributions, "_text", slow)
-    monkeypatch.setattr("time.sleep", lambda _: awaited.set())  # the thread goes on when it is waited for
+    monkeypatch.setattr("time.sleep", waited)
     distributions.distributions.cache_clear()
     finding.found.cache_clear()
     left.start()
