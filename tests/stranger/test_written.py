@@ -24,7 +24,7 @@ def test_a_thread_of_an_earlier_test_does_not_hide_a_distribution(
         return read(folder, name)
 
     def waited(seconds: float, sleep: Callable[[float], None] = time.sleep) -> None:
-        awaited.set()  # the thread goes on when it is waited for
+        awaited.set()  # only now may the thread finish its search
         sleep(seconds)
 
     left = threading.Thread(target=features)
