@@ -50,8 +50,8 @@ def _forget() -> None:
     """Let Lumen find its features again: clear the caches of its functions.
 
     A thread that an earlier test has left may be inside such a function, and store what it found on the previous import
-    path. So the caches are cleared again when no thread is inside one. The process that waits to check files has the features of its own
-    start, so it ends.
+    path. So the caches are cleared again when no thread is inside one. The process that waits to check files has the
+    features of its own start, so it ends.
     """
     invalidate_caches()
     if idle := sys.modules.get("lumen.run.reload.idle_process"):
