@@ -11,6 +11,7 @@ from pathlib import Path
 from traceback import walk_stack
 from types import CodeType, ModuleType
 from typing import Any
+from unittest.mock import patch
 
 PATIENCE = 60.0
 """The time that other threads have to leave the functions with caches [s]; only one that hangs needs it."""
@@ -32,12 +33,19 @@ def write_distribution(folder: Path, name: str, manifest: str, files: Mapping[st
 
 @contextmanager
 def on_path(folder: Path) -> Iterator[None]:
-    """Let this process import modules from that folder, including features, while the context lasts."""
+    """Let this process import modules from that folder, including features, while the context lasts.
+
+    Meanwhile Lumen remembers no file that it read with other features: a section of lumen.yaml is an object of a class
+    that is imported anew.
+    """
+    from lumen.project import memoization  # late: most callers of this module only write a distribution
+
     before = set(sys.modules)
     sys.path.insert(0, str(folder))
     _forget()
     try:
-        yield
+        with patch.dict(memoization._last, clear=True):
+            yield
     finally:
         sys.path.remove(str(folder))
         for name in set(sys.modules) - before:

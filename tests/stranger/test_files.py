@@ -1,9 +1,7 @@
 """A YAML file beside lumen.yaml that an installed package adds: read, checked, hashed, completed and listed."""
 
 import json
-from collections.abc import Iterator
 from pathlib import Path
-from unittest.mock import patch
 
 import pytest
 
@@ -11,7 +9,6 @@ from lumen.cli.main import main
 from lumen.features.editor.analysis import Analysis
 from lumen.features.editor.hover import hover
 from lumen.lint import check_files
-from lumen.project import memoization
 from lumen.project.building import draft
 from lumen.project.files import belongs, fingerprint, read_files
 from lumen.project.unread import unread_in
@@ -26,13 +23,6 @@ from lumen.feature import Feature, FileRow
 
 FEATURE = Feature(name="faulty", files={"guests.yaml": FileRow("faulty_guests:build", "faulty_guests:SCHEMA")})
 """
-
-
-@pytest.fixture(autouse=True)
-def fresh() -> Iterator[None]:
-    """Forget files that were read with other features."""
-    with patch.dict(memoization._last, clear=True):
-        yield
 
 
 @pytest.fixture

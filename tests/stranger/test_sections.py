@@ -1,10 +1,8 @@
 """A section of lumen.yaml that an installed package adds: checked, read, completed, compared and reloaded."""
 
 import json
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
-from unittest.mock import patch
 
 import pytest
 
@@ -17,7 +15,6 @@ from lumen.features.fleet.bundle_trial import at_home
 from lumen.insight.changes import changes, live
 from lumen.language.projects import Project
 from lumen.lint import check_files
-from lumen.project import memoization
 from lumen.project.files import read_files
 from lumen.run.reload.delta import DeltaDecoder, DeltaEncoder
 from lumen.run.reload.idle_process import end_idle
@@ -41,13 +38,6 @@ FEATURE = Feature(
 )
 """
 LAMP = "lamp: {first: night, scenes: {night: 0.1, day: 1}}\n"
-
-
-@pytest.fixture(autouse=True)
-def fresh() -> Iterator[None]:
-    """Forget files that were read with other features."""
-    with patch.dict(memoization._last, clear=True):
-        yield
 
 
 def files(lamp: str) -> dict[str, bytes]:
@@ -215,13 +205,12 @@ def test_a_section_that_can_not_be_read_is_one_finding_that_names_its_package(ca
     assert right in MANIFEST + LAMP_MODULE
     manifest, module = MANIFEST.replace(right, wrong), LAMP_MODULE.replace(right, wrong)
     installed.write("lumen-lamp", manifest, lamp_settings=module)
-    with patch.dict(memoization._last, clear=True):
-        [(code, word, message, _)] = marked(LAMP)
-        assert (code, word) == ("broken-feature", "lamp")
-        assert "`lumen-lamp` 1.0 is faulty: reading `lamp` raised" in message
-        assert told in message
-        assert project(LAMP).sections == {}
-        assert marked("") == []
+    [(code, word, message, _)] = marked(LAMP)
+    assert (code, word) == ("broken-feature", "lamp")
+    assert "`lumen-lamp` 1.0 is faulty: reading `lamp` raised" in message
+    assert told in message
+    assert project(LAMP).sections == {}
+    assert marked("") == []
 
 
 @for_each(
@@ -238,8 +227,7 @@ def test_a_section_that_can_not_be_read_is_one_finding_that_names_its_package(ca
 def test_a_wrong_row_is_a_fault_of_the_manifest(right: str, wrong: str, told: str, installed: Installed) -> None:
     assert right in MANIFEST
     installed.write("lumen-lamp", MANIFEST.replace(right, wrong), lamp_settings=LAMP_MODULE)
-    with patch.dict(memoization._last, clear=True):
-        [(code, _, message, _)] = marked("")
+    [(code, _, message, _)] = marked("")
     assert code == "broken-feature"
     assert told in message
 
@@ -249,7 +237,6 @@ def test_a_key_with_dots_is_below_another(key: str, installed: Installed) -> Non
     below, _, name = key.partition(".")
     read = LAMP_MODULE.replace('data["lamp"]', f'data["{below}"]["{name}"]')
     installed.write("lumen-lamp", MANIFEST.replace('"lamp":', f'"{key}":'), lamp_settings=read)
-    with patch.dict(memoization._last, clear=True):
-        assert marked("") == []
-        if below != "name":  # which is a text
-            assert project(f"{below}: {{lamp: {{scenes: {{night: 1}}}}}}\n").sections.keys() == {key}
+    assert marked("") == []
+    if below != "name":  # which is a text
+        assert project(f"{below}: {{lamp: {{scenes: {{night: 1}}}}}}\n").sections.keys() == {key}

@@ -7,9 +7,31 @@ from collections.abc import Callable
 import pytest
 
 from lumen import distributions
-from lumen.feature import features, finding
+from lumen.feature import features, finding, resolve
+from lumen.lint import check_files
+from lumen.project.files import read_files
+from tests import ROOT
 from tests.stranger.installing import Installed
 from tests.waiting import HANG
+
+LAMP = """\
+from dataclasses import dataclass
+
+from lumen.feature import Feature, Section
+
+
+@dataclass(frozen=True)
+class Lamp:
+    watts: int = 0
+
+
+def read(data, report):
+    return Lamp(**data["lamp"])
+
+
+SCHEMA = {"type": "object", "properties": {"watts": {"type": "integer"}}}
+FEATURE = Feature(name="lamp", sections={"lamp": Section(read="lamp:read", schema="lamp:SCHEMA", title="lamp")})
+"""
 
 
 def test_a_thread_of_an_earlier_test_does_not_hide_a_distribution(
@@ -38,3 +60,13 @@ def test_a_thread_of_an_earlier_test_does_not_hide_a_distribution(
     awaited.set()
     left.join()
     assert "late" in {feature.name for feature in features()}
+
+
+def test_a_file_is_read_again_after_another_installation(installed: Installed) -> None:
+    files = read_files(ROOT / "tests/lint/base")
+    files["lumen.yaml"] += b"lamp: {watts: 3}\n"
+    for _ in range(2):
+        installed.write("lamp", LAMP)
+        project, found = check_files(ROOT, files)
+        assert project, found
+        assert type(project.sections["lamp"]) is resolve("lamp:Lamp")
