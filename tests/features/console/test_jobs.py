@@ -7,6 +7,7 @@ import json
 import math
 import sys
 from collections.abc import AsyncIterator
+from contextlib import closing
 from functools import partial
 from pathlib import Path
 from types import SimpleNamespace
@@ -211,9 +212,10 @@ def test_who_does_not_read_poses_is_given_the_newest_only(
 
 def test_a_robot_of_another_project_is_not_drawn_by_the_model_of_this_one(served: Served, hosted: Hosted) -> None:
     body = {"robot": "NAO2", "parts": ["robot"], "session": "s", "state": "here", "time": 0.0}
-    hosted.exhibition.node.bus.publish("lumen.NAO2.presence", body)
-    until(lambda: "NAO2" in [robot["robot"] for robot in served.browser.robots])
-    for path in ("shape", "poses"):
-        answer = served.browser.get(f"/api/{path}?robot=NAO2")
-        reason = "only robots of this console's own project can be drawn"
-        assert (answer.status, answer.data["reason"]) == (404, reason)
+    with closing(served):  # other tests need a console that knows no other robot
+        hosted.exhibition.node.bus.publish("lumen.NAO2.presence", body)
+        until(lambda: "NAO2" in [robot["robot"] for robot in served.browser.robots])
+        for path in ("shape", "poses"):
+            answer = served.browser.get(f"/api/{path}?robot=NAO2")
+            reason = "only robots of this console's own project can be drawn"
+            assert (answer.status, answer.data["reason"]) == (404, reason)
