@@ -53,7 +53,14 @@ def turned(robot: Driven) -> float:
 
 
 def test_it_answers_as_it_was_recorded(daemon: RealDaemon) -> None:
-    assert observed(daemon.url) == json.loads(RECORDED.read_text())
+    """The pose that ends a move may be the last but one on a slow machine, some hundredths of a radian away."""
+    found, recorded = observed(daemon.url), json.loads(RECORDED.read_text())
+    for name in ("awake", "asleep"):
+        one, other = found.pop(name), recorded.pop(name)
+        assert one["pose"] == pytest.approx(other["pose"], abs=0.05)
+        assert one["antennas"] == pytest.approx(other["antennas"], abs=0.05)
+        assert one["mode"] == other["mode"]
+    assert found == recorded
 
 
 def test_it_keeps_the_promises_of_a_robot(robot: Driven, project: Project) -> None:

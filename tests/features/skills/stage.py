@@ -4,6 +4,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from threading import Thread
 from typing import Any
 
 from lumen.bus.memory import MemoryBus
@@ -83,6 +84,7 @@ class Stage:
 
 @contextmanager
 def stage(root: Path, bus: Bus | None = None) -> Iterator[Stage]:
+    others = skill_threads()  # of an exhibition that other tests of the file share
     made = Stage(root, bus)
     close = open_workshop(made.workshop)
     try:
@@ -90,4 +92,9 @@ def stage(root: Path, bus: Bus | None = None) -> Iterator[Stage]:
     finally:
         made.runner.close()
         close()
-        until(lambda: not (threads("lumen-skill-") or threads("lumen-program-")))
+        until(lambda: skill_threads() <= others)
+
+
+def skill_threads() -> set[Thread]:
+    """Return the threads that perform skills, and those that read what programs of skills print."""
+    return threads("lumen-skill-") | threads("lumen-program-")
