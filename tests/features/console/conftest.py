@@ -43,7 +43,6 @@ class Hosted:
         robot = BoundedRobot(Obedient(), loaded.body)
         setup = set_up_with(robot, None, 1.0) if real_skills else set_up("recording", loaded, "1")
         self.exhibition = Exhibition(Plan(loaded, setup, bus, options=options))
-        self.directory.open(self.exhibition.node.bus, bus, loaded)
         self.exhibition.start()
         self._begun = self._state
         self._thread = threading.Thread(target=self._live)
