@@ -3,6 +3,7 @@
 import gc
 from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import ClassVar
 
 NEVER = 2**31 - 1
 """A threshold of smaller collections that is never reached, so that Python begins no full collection."""
@@ -32,13 +33,22 @@ class GcScheduler:
     """A scheduler of full collections. Call it after each tick, when the most time is left until the next.
 
     It stops Python from beginning full collections itself, at any moment and on any thread. Objects that exist when the
-    scheduler is made are never searched again: with everything that was imported and loaded, a collection would last a
-    tick or more; with later objects alone it lasts some milliseconds.
+    first scheduler of a process is made are never searched again: with everything that was imported and loaded, a
+    collection would last a tick or more; with later objects alone it lasts some milliseconds.
     """
 
+    _froze = False
+    _open: ClassVar[set["GcScheduler"]] = set()
+    _usual = (0, 0, 0)
+    """Python's thresholds before the schedulers that are open."""
+
     def __init__(self) -> None:
-        gc.freeze()  # without a collection before: imports and loading leave almost no garbage
-        self._usual = gc.get_threshold()
+        if not self._froze:  # a second time would keep what earlier runs of this process have left
+            GcScheduler._froze = True
+            gc.freeze()  # without a collection before: imports and loading leave almost no garbage
+        if not self._open:
+            GcScheduler._usual = gc.get_threshold()
+        self._open.add(self)
         gc.set_threshold(*self._usual[:2], NEVER)
 
     def __call__(self, _: float = 0.0) -> None:
@@ -47,5 +57,7 @@ class GcScheduler:
             gc.collect()
 
     def close(self) -> None:
-        """Restore Python's usual thresholds."""
-        gc.set_threshold(*self._usual)
+        """Restore Python's usual thresholds, unless another scheduler of the process is open."""
+        self._open.discard(self)
+        if not self._open:
+            gc.set_threshold(*self._usual)
