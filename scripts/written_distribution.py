@@ -59,7 +59,7 @@ def _forget() -> None:
 
     A thread that an earlier test has left may be inside such a function, and store what it found on the previous import
     path. So the caches are cleared again when no thread is inside one. The process that waits to check files has the
-    features of its own start, so it ends.
+    features of its own start, so it ends. Raises TimeoutError if a thread stays inside.
     """
     invalidate_caches()
     if idle := sys.modules.get("lumen.run.reload.idle_process"):
@@ -69,7 +69,10 @@ def _forget() -> None:
     _clear(functions)
     codes = {function.__wrapped__.__code__ for function in functions}
     deadline = time.monotonic() + PATIENCE
-    while not codes.isdisjoint(_running() | _running()) and time.monotonic() < deadline:
+    while inside := codes & (_running() | _running()):
+        if time.monotonic() > deadline:
+            names = ", ".join(sorted(code.co_qualname for code in inside))
+            raise TimeoutError(f"after {PATIENCE:g} s, another thread is still in {names}")
         time.sleep(0.001)
     _clear(functions)
 
