@@ -119,7 +119,8 @@ class RunRecords:
 
     def forget(self, person: PersonName) -> None:
         """Remove a person's entries from the journals; `keep` writes the snapshot anew."""
-        self._desk.submit(self.journal.forget, person)
+        if self._home:
+            self._desk.submit(self.journal.forget, person)
         if self.inputs:
             self.inputs.forget(person)
 
