@@ -153,6 +153,7 @@ class Troupe:
     def __init__(self, folder: Path, url: str) -> None:
         self.folder, self.url, self.speed = folder, url, SPEED
         self.members: list[Member] = []
+        self._killed: list[Member] = []
         self._time = RoundTime()
         self.told = StringIO()
         self.ear: Bus = connect(url)
@@ -172,8 +173,12 @@ class Troupe:
         return robot, brain
 
     def kill(self, member: Member) -> None:
-        """End a member without notice to the others; its connections close, as the system would close them."""
+        """End a member without notice to the others; its connections close, as the system would close them.
+
+        Its threads end with the troupe.
+        """
         self.members.remove(member)
+        self._killed.append(member)
         member.process.bus.close()
         member.run_directory.close(forget=False)
 
@@ -205,7 +210,7 @@ class Troupe:
             self._tick()
 
     def close(self) -> None:
-        for member in self.members:
+        for member in (*self.members, *self._killed):
             member.close()
         self.ear.close()
 

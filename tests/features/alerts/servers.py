@@ -73,6 +73,8 @@ class Post:
         threading.Thread(target=self._accept, daemon=True).start()
 
     def close(self) -> None:
+        with suppress(OSError):
+            self._listening.shutdown(socket.SHUT_RDWR)  # ends the waiting of `_accept`
         self._listening.close()
 
     def _accept(self) -> None:

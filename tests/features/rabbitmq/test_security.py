@@ -144,4 +144,5 @@ def test_a_broker_that_is_too_old_is_one_line(capsys: pytest.CaptureFixture[str]
     assert main(["doctor", "--bus", f"amqp://guest:guest@{place}/"]) == 2
     said = capsys.readouterr().err
     assert said == f"lumen doctor: the broker at {place} is RabbitMQ 3.6.10, which is too old: install 3.10 or newer\n"
+    listener.shutdown(socket.SHUT_RDWR)  # ends the waiting for another connection
     listener.close()
