@@ -8,6 +8,7 @@ from tests.environment import settle
 
 pytest_plugins = [
     "tests.provided",  # first, since others import it
+    "tests.leftovers",
     "tests.suites",
     "tests.marking",
     "tests.servers",
