@@ -104,7 +104,8 @@ class ModulePart(Part):
 
     def close(self) -> None:
         for module in self._modules.values():
-            self._done(module.close)
+            for close in dict.fromkeys((type(module).close, Module.close)):  # the thread ends even if the first fails
+                self._done(partial(close, module))
         for presence in self._presences:
             presence.close()
 
