@@ -1,8 +1,10 @@
 """Work on the pages: sign in, press buttons that the states declare, say GO, and ask why."""
 
 from collections.abc import Iterator
+from contextlib import suppress
 
 import pytest
+from selenium.common.exceptions import WebDriverException
 from selenium.webdriver import ActionChains
 from selenium.webdriver.common.keys import Keys
 
@@ -80,8 +82,15 @@ def console(mine: Hosted) -> Iterator[str]:
 
 @pytest.fixture
 def hall(mine: Hosted, console: str, viewer: Viewer) -> Hosted:
-    """The exhibition in its state `hall`, with its page, on which an author shows as an operator."""
+    """The exhibition in its state `hall`, with its page, on which an author shows as an operator; nothing waits."""
     sign_in(viewer, console, Role.AUTHOR)
+
+    def decided() -> bool:
+        with suppress(WebDriverException, IndexError):  # it is decided meanwhile, or the page is drawn anew
+            viewer.all(".approval .actions button:last-child")[0].click()
+        return not (mine.exhibition.loop.runtime.approvals.waiting or viewer.all(".approval"))
+
+    until(decided, HANG)
     if viewer.text(".leaf .state-name") == "stage":
         viewer.type("b")
     viewer.shows("hall", ".leaf")
