@@ -16,6 +16,7 @@ from lumen.run.rehearsal import RehearsalTrace
 from lumen.run.setup import set_up
 from tests import ROOT
 from tests.copying import copied_project
+from tests.leftovers import none_left
 from tests.stranger.installing import Installed
 from tests.waiting import HANG
 
@@ -324,9 +325,8 @@ MODULES = {
 }
 
 
-@pytest.mark.parametrize("case", MODULES)
-def test_an_exhibition_goes_on_without_a_faulty_module(case: str, installed: Installed, hall: Path) -> None:
-    code, fault = MODULES[case]
+def told_by(code: str, installed: Installed, hall: Path) -> list[str]:
+    """Return what the exhibition reports of a package's module with this code in a second."""
     installed.write("faulty", MANIFEST.format(row=ROW), faulty_code=code)
     main_file = hall / "lumen.yaml"
     main_file.write_text(f"{main_file.read_text()}\nmodules: {{mood: {{here: true}}}}\n")
@@ -336,9 +336,20 @@ def test_an_exhibition_goes_on_without_a_faulty_module(case: str, installed: Ins
     with Exhibition(plan) as exhibition:
         exhibition.start()
         assert exhibition.run(seconds=1.0) == pytest.approx(1.0)
-    (line,) = [text for _, who, text in narrator.lines if who == "mood"]
+    return [text for _, who, text in narrator.lines if who == "mood"]
+
+
+@pytest.mark.parametrize("case", MODULES)
+def test_an_exhibition_goes_on_without_a_faulty_module(case: str, installed: Installed, hall: Path) -> None:
+    code, fault = MODULES[case]
+    (line,) = told_by(code, installed, hall)
     assert "the installed package `faulty` 1.0 is faulty" in line
     assert fault in line
+
+
+def test_the_thread_of_a_module_ends_although_its_own_close_does_nothing(installed: Installed, hall: Path) -> None:
+    with none_left():
+        told_by(f"{MODULE}def hears(self): return {{}}\n    def close(self): pass", installed, hall)
 
 
 def test_a_fault_on_a_message_is_told_with_the_name_of_the_package(installed: Installed, hall: Path) -> None:
