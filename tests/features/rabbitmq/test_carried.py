@@ -177,27 +177,32 @@ def test_what_failed_in_a_handler_is_put_aside_with_the_reason(opened: Open, str
 
 
 @pytest.mark.parametrize(
-    ("body", "reason"),
-    [(b"{", "it is not JSON"), (b"\xff", "it is not UTF-8"), (b"[" * 10_000, "deeper than 64"), (b'"no"', "unusable")],
+    ("name", "body", "reason"),
+    [
+        ("cut", b"{", "it is not JSON"),
+        ("odd", b"\xff", "it is not UTF-8"),
+        ("deep", b"[" * 10_000, "deeper than 64"),
+        ("refused", b'"no"', "unusable"),
+    ],
+    ids=["cut", "odd", "deep", "refused"],
 )
 def test_a_module_of_2015_gets_an_answer_to_what_nobody_can_use(
-    opened: Open, stranger: Any, body: bytes, reason: str
+    opened: Open, stranger: Any, name: str, body: bytes, reason: str
 ) -> None:
+    key = f"avatar.{name}.command"
     bus, dead = opened(), copies(stranger, "lumen.dead")
 
     def refuse(message: Message) -> None:
         raise Refused(f"it is {message.body}: unusable")
 
-    bus.subscribe("avatar.D.command", refuse)
+    bus.subscribe(key, refuse)
     mine = stranger.queue_declare("", exclusive=True).method.queue
-    stranger.basic_publish(
-        "amq.topic", "avatar.D.command", body, pika.BasicProperties(reply_to=mine, correlation_id="7")
-    )
+    stranger.basic_publish("amq.topic", key, body, pika.BasicProperties(reply_to=mine, correlation_id="7"))
     _, properties, answer = read(stranger, mine)
     assert answer.decode().startswith("message refused: ")
     assert reason in answer.decode()
     assert (properties.correlation_id, properties.content_type) == ("7", "text/plain")
-    assert read(stranger, dead, "avatar.D.command")[2] == body
+    assert read(stranger, dead, key)[2] == body
 
 
 def test_a_stop_waits_behind_nothing(opened: Open) -> None:
