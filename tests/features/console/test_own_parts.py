@@ -113,7 +113,8 @@ def test_the_types_of_the_pages_describe_them(console: Browser, tmp_path: Path) 
 def test_a_skill_is_begun_by_an_operator_only(own: Hosted, console: Browser) -> None:
     ended = console.command("skill", name="spray", arguments={"duration": "10ms"}).data
     assert (ended["state"], ended["reason"]) == ("finished", "")
-    assert "ZeroDivisionError" in console.command("skill", name="fail").data["reason"]
+    failed = console.command("skill", name="fail").data
+    assert "ZeroDivisionError" in failed["reason"], failed
     until(lambda: "ZeroDivisionError" in states(console)["fail"]["trouble"], HANG)
     wrong = console.command("skill", name="spray", arguments={"duration": "long"}).data
     assert wrong["state"] == "failed"

@@ -181,7 +181,7 @@ def test_what_failed_in_a_handler_is_put_aside_with_the_reason(opened: Open, str
     [
         ("cut", b"{", "it is not JSON"),
         ("odd", b"\xff", "it is not UTF-8"),
-        ("deep", b"[" * 10_000, "deeper than 64"),
+        ("deep", b"[" * 10_000 + b"]" * 10_000, "deeper than 64"),
         ("refused", b'"no"', "unusable"),
     ],
     ids=["cut", "odd", "deep", "refused"],
