@@ -125,7 +125,7 @@ def says(mine: Hosted, words: str) -> None:
 
 
 def says_until_seen(viewer: Viewer, mine: Hosted, words: str, text: str) -> None:
-    """Say it, and see this text beside a transition that waits; say it again if its time has run out before."""
+    """Send these words again and again until the page shows this text beside a transition that waits."""
     approvals = mine.exhibition.loop.runtime.approvals
 
     def seen() -> bool:
