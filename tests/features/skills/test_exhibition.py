@@ -52,6 +52,16 @@ def test_a_robot_of_ones_own_performs_a_skill_and_the_behaviour_gets_its_result(
     until(lambda: not threads("lumen-program-"))
 
 
+def test_an_exhibition_performs_its_skills_after_a_second_one_of_the_project_has_ended(tmp_path: Path) -> None:
+    root = project_in(tmp_path, {**SHORT, CODE: ("0.2", "0.7")})
+    with lumen.open(root, robot=Obedient()) as exhibition:
+        with lumen.open(root, robot=Obedient()):
+            pass
+        meet(exhibition)
+        live(exhibition, lambda: "sprayed" in exhibition.configuration)
+        assert exhibition.context == {"litres": 0.7}
+
+
 def test_a_failing_skill_is_an_error_of_the_do_and_the_exhibition_lives_on(tmp_path: Path) -> None:
     root = project_in(tmp_path, {**SHORT, CODE: ("    print", "    1 / 0\n    print")})
     seen: list[Event] = []

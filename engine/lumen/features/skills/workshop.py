@@ -396,22 +396,22 @@ def _read(root: Path, skill: Skill) -> _Code:
     return _Code(stamp, digest.hexdigest(), source)
 
 
-_open: dict[tuple[str, str], Workshop] = {}
-_opening = threading.Lock()
+_open: list[Workshop] = []
+"""The workshops that receive calls, in the order in which they were opened."""
 
 
 def open_workshop(workshop: Workshop) -> Callable[[], None]:
-    """Register the workshop for calls of its project's folder and robot; return the function that closes it."""
-    key = (workshop.project.root, workshop.project.robot)
+    """Register the workshop for calls of its project's folder and robot; return the function that closes it.
+
+    Of several open workshops of the same folder and robot, the newest receives the calls.
+    """
 
     def close() -> None:
-        with _opening:
-            if _open.get(key) is workshop:
-                del _open[key]
+        with suppress(ValueError):  # it was closed before
+            _open.remove(workshop)
         workshop.close()
 
-    with _opening:
-        _open[key] = workshop
+    _open.append(workshop)
     return close
 
 
@@ -433,4 +433,5 @@ def is_pretending(row: VerbRow) -> bool:
 
 def workshop_of(row: VerbRow) -> Workshop | None:
     """Return the open workshop of a skill's project and robot; None if there is none, as in a pretending story."""
-    return _open.get((row.root, row.robot))
+    of_row = (one for one in reversed(_open) if (one.project.root, one.project.robot) == (row.root, row.robot))
+    return next(of_row, None)
