@@ -9,6 +9,7 @@ import pytest
 from lumen.cli.main import main
 from tests.features.alerts.halls import files
 from tests.features.alerts.servers import Post, Web
+from tests.tables import for_each
 
 Webs = Callable[..., Web]
 
@@ -59,3 +60,20 @@ def test_nobody_is_to_be_told(folder: Path, capsys: pytest.CaptureFixture[str]) 
     told(folder, "")
     assert main(["alerts", "test", str(folder)]) == 2
     assert "no alert recipients: list them in" in capsys.readouterr().err
+
+
+@for_each(
+    ("broken", "place"),
+    [
+        (b"alerts: [", "lumen.yaml:1:9: error [yaml-syntax]"),
+        (b"\xff\xfe", "lumen.yaml:1:1: error [not-utf8]"),
+        (b"alerts: {to: [{command: [echo]}, {webhok: 'http://127.0.0.1'}]}", "lumen.yaml:1:35: error [unknown-key]"),
+    ],
+)
+def test_a_faulty_lumen_yaml_is_reported_and_nothing_is_sent(
+    folder: Path, capsys: pytest.CaptureFixture[str], broken: bytes, place: str
+) -> None:
+    (folder / "lumen.yaml").write_bytes(broken + b"\n")
+    assert main(["alerts", "test", str(folder)]) == 1
+    told = capsys.readouterr()
+    assert (told.out, place in told.err) == ("", True), told.err

@@ -3,11 +3,15 @@
 import argparse
 import json
 
-from lumen.errors import UsageError
+from lumen.errors import ProjectError, UsageError
 from lumen.features.alerts.alert import Origin
 from lumen.features.alerts.desk import AlertDesk
 from lumen.features.alerts.settings import Alerts
+from lumen.language.diagnostics import has_errors
+from lumen.lint import check_files
+from lumen.project.files import read_files
 from lumen.project.main_file import main_settings
+from lumen.project.project_folders import MAIN_FILE
 from lumen.project.running_project import own_project
 
 
@@ -26,9 +30,12 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Send a test alert to each recipient and print the results; return 0 if all alerts arrived, else 1.
 
-    Raises UsageError if there are no recipients.
+    Raises ProjectError if lumen.yaml has errors, UsageError if there are no recipients.
     """
     root = own_project(options.project)
+    found = [each for each in check_files(root, read_files(root))[1] if each.place.file == MAIN_FILE]
+    if has_errors(found):  # else a recipient with a mistake would be left out silently
+        raise ProjectError(found)
     settings = main_settings(root)
     if settings is None or not (alerts := settings.section(Alerts)).to:
         raise UsageError(f"no alert recipients: list them in {root / 'lumen.yaml'} under `alerts:`, `to:`")
