@@ -5,9 +5,10 @@
     python scripts/shaken.py --suite test --only-real     real things: 30 runs on half a core
     python scripts/shaken.py --half 5 --seed 17 -- tests/buses any words for pytest
 
-Crowded means four busy loops beside the tests. Half a core is a cgroup's quota, if this user may make one; else the
-first core alone, shared with a busy loop. `--only-real` takes the tests with a process, a broker or a browser. The run
-numbered i has the seed plus i; what a run printed is kept in `.cache/shaken`. The exit code is 1 if anything failed.
+Crowded means four busy loops beside the tests, which have the weight of one process for each worker. Half a core is a
+cgroup's quota, if this user may make one; else the first core alone, shared with a busy loop. `--only-real` takes the
+tests with a process, a broker or a browser. The run numbered i has the seed plus i; what a run printed is kept in
+`.cache/shaken`. The exit code is 1 if anything failed.
 All processes that it starts end with it, also on Ctrl-C.
 """
 
@@ -20,7 +21,7 @@ import shutil
 import signal
 import sys
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -65,7 +66,14 @@ class Group:
 
     def limit(self) -> bool:
         """Set the quota to half a core; return True if the system permits it."""
-        settings = {"cpu.max": f"{QUOTA} {PERIOD}", "cpu.cfs_quota_us": str(QUOTA)}
+        return self._write({"cpu.max": f"{QUOTA} {PERIOD}", "cpu.cfs_quota_us": str(QUOTA)})
+
+    def weigh(self, processes: int) -> None:
+        """Give the group the weight of this many processes; else all its processes together count as one."""
+        self._write({"cpu.weight": str(100 * processes), "cpu.shares": str(1024 * processes)})
+
+    def _write(self, settings: Mapping[str, str]) -> bool:
+        """Write the first of these settings that the system has, and return True; False if it permits none."""
         for folder in self.folders:
             for file, value in settings.items():
                 with suppress(OSError):
@@ -210,6 +218,7 @@ def shaken(plan: Plan, arguments: argparse.Namespace) -> Run:
     with ExitStack() as stack, log.open("w") as told:
         group = Group(f"shaken-{os.getpid()}-{plan.seed}")
         stack.callback(group.close)
+        group.weigh(arguments.workers)
         if plan.condition == "crowded":
             for _ in range(CROWD):
                 stack.enter_context(busy())

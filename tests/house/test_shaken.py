@@ -89,3 +89,19 @@ def test_outcomes_are_read_whole_and_cut(tmp_path: Path) -> None:
     with file.open("a") as more:
         more.write('["a::e", "fai')
     assert shaken.read(file) == (1, {"a::c"})
+
+
+@pytest.mark.parametrize(
+    ("files", "limited"), [(("cpu.shares", "cpu.cfs_quota_us"), True), (("cpu.weight", "cpu.max"), True), ((), False)]
+)
+def test_a_group_has_the_weight_of_its_workers_and_at_most_half_a_core(
+    tmp_path: Path, files: tuple[str, ...], limited: bool
+) -> None:
+    for file in files:
+        (tmp_path / file).write_text("")
+    group = shaken.Group.__new__(shaken.Group)
+    group.folders = [tmp_path]
+    group.weigh(2)
+    assert group.limit() is limited
+    wanted = {"cpu.shares": "2048", "cpu.cfs_quota_us": "50000", "cpu.weight": "200", "cpu.max": "50000 100000"}
+    assert {file.name: file.read_text() for file in tmp_path.iterdir()} == {file: wanted[file] for file in files}
