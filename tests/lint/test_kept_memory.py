@@ -54,6 +54,49 @@ def test_what_is_remembered_says_the_same(
     assert 0.0 <= memoization.newly_made() < 1.0
 
 
+FLAG = """\
+id: flag
+context: {{on: {value}}}
+types: {{on: {{enum: {choice}}}}}
+states: {{hall: {{on: {{face: {{target: hall, guard: context.on}}}}}}}}
+"""
+NUMBERS = FLAG.format(value=1, choice=[0, 1])
+TRUTHS = FLAG.format(value="true", choice="[false, true]")
+
+
+def test_a_finding_in_an_expression_is_remembered_as_it_was(project: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = project / "behaviors/flag.yaml"
+    path.write_text(NUMBERS)
+    anew = check_files(project, read_files(project))
+    (found,) = (each for each in anew[1] if each.place.file == "behaviors/flag.yaml" and each.severity == "error")
+    assert found.message == "this is a number, but true or false is needed here"
+    keep_memory(project)
+    forget(monkeypatch)
+    recall_memory(project)
+    lumen_yaml = project / "lumen.yaml"
+    lumen_yaml.write_text(lumen_yaml.read_text() + "# edited\n")
+    assert check_files(project, read_files(project))[1] == anew[1]
+
+
+def test_numbers_are_not_taken_for_truth_values(tmp_path: Path) -> None:
+    files = {"lumen.yaml": b"behavior: flag\n"}
+    for text in (NUMBERS, TRUTHS, NUMBERS, TRUTHS):
+        found = check_files(tmp_path, {**files, "behaviors/flag.yaml": text.encode()})[1]
+        errors = [each.code for each in found if each.severity == "error" and each.place.file == "behaviors/flag.yaml"]
+        assert errors == (["type-mismatch"] if text == NUMBERS else [])
+
+
+DANCE = b"keyframes: [{play: bowing, at: 0s}, {at: 1s, joints: {HeadYaw: 0.1}}]\n"
+WAVE = b"keyframes: [{at: 1s, joints: {HeadYaw: 0.1}}]\n"
+
+
+def test_the_hint_for_an_unknown_motion_is_from_the_motions_that_are_there(project: Path) -> None:
+    for name in ("bowings", "throwing"):
+        files = {**read_files(project), "motions/dance.yaml": DANCE, f"motions/{name}.yaml": WAVE}
+        (found,) = (each for each in check_files(project, files)[1] if "`bowing`" in each.message)
+        assert f"`{name}`" in found.hint
+
+
 TALK = b"""id: talk
 words: [words]
 states:

@@ -128,8 +128,8 @@ class Code(str):
         code.family, code.severity, code.summary = family, severity, summary
         return code
 
-    def __reduce__(self) -> tuple[type[str], tuple[str]]:
-        return str, (str(self),)  # other processes receive only its name
+    def __reduce__(self) -> tuple[type[Self], tuple[str, str, Severity, str]]:
+        return type(self), (str(self), self.family, self.severity, self.summary)
 
     def at(
         self, place: Place, message: str, hint: str = "", related: tuple[Related, ...] = (), cause: str = ""

@@ -5,7 +5,8 @@ a later process.
 """
 
 import pickle
-from collections.abc import Callable, Hashable
+from collections.abc import Callable, Hashable, Mapping
+from dataclasses import fields, is_dataclass
 from typing import Any, TypeVar
 
 T = TypeVar("T")
@@ -46,17 +47,27 @@ def memoize(slot: Hashable, given: Any, make: Callable[[], T]) -> T:
     """
     _asked.add(slot)
     known = _last.get(slot)
-    if known is not None and known[0] == given:
+    if known is not None and known[0] == given and _of_the_same_types(known[0], given):
         return known[1]  # type: ignore[no-any-return]
     made = make()
     if len(_last) >= MAX_MEMOIZED:
-        _last.clear()
-        _unpacked.clear()
-        _asked.clear()
+        for one in (_last, _unpacked, _asked):
+            one.clear()
         _asked.add(slot)
     _last[slot] = given, made
     _unpacked.discard(slot)
     return made
+
+
+def _of_the_same_types(one: Any, other: Any) -> bool:
+    """Return whether two equal values also have the same types: to Python, `True` equals 1."""
+    if one is other or type(one) is not type(other):
+        return one is other
+    if isinstance(one, Mapping):
+        one, other = [*one.values()], [other[key] for key in one]
+    elif is_dataclass(one):
+        one, other = ([getattr(each, field.name) for field in fields(one) if field.compare] for each in (one, other))
+    return not isinstance(one, list | tuple) or all(map(_of_the_same_types, one, other))
 
 
 def begin() -> None:

@@ -76,7 +76,8 @@ def build_motions(
     built: dict[str, MotionDefinition] = {}
     for name in order:
         data, report = files[name]
-        given = (body, verbs, {played: (built.get(played), played in files) for played in plays[name]})
+        known = None if files.keys() >= plays[name].keys() else [*files]  # they are in the hint for an unknown motion
+        given = (body, verbs, {played: (built.get(played), played in files) for played in plays[name]}, known)
         build = partial(
             build_motion, data, report, name=name, body=body, motions=built, broken=files.keys(), verbs=verbs
         )
