@@ -34,7 +34,7 @@ class ConsolePart(Part):
         self._root, self._url, self._tell = root, url, tell
         self._process: subprocess.Popen[str] | None = None
         self._lines: deque[str] = deque(maxlen=20)
-        self._last, self._said = "", ""
+        self._said = ""
         self._backoff = Backoff(FIRST_PAUSE, LONGEST_PAUSE)
         self._next, self._began, self._looked = 0.0, 0.0, 0.0
 
@@ -45,10 +45,9 @@ class ConsolePart(Part):
 
     def tick(self, now: float, changes: Sequence[Event]) -> None:
         while self._lines:
-            self._last = self._lines.popleft()
-            if self._last != self._said:
-                self._said = self._last
-                self._tell(self._last)
+            if (line := self._lines.popleft()) != self._said:
+                self._said = line
+                self._tell(line)
         here = time.monotonic()
         if here - self._looked < LOOK_PERIOD:
             return
