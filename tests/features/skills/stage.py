@@ -8,7 +8,7 @@ from threading import Thread
 from typing import Any
 
 from lumen.bus.memory import MemoryBus
-from lumen.features.skills.workshop import Workshop, open_workshop
+from lumen.features.skills.workshop import Workshop, register
 from lumen.language.commands import Do
 from lumen.language.events import RESULT, Event
 from lumen.ports import Bus
@@ -86,12 +86,13 @@ class Stage:
 def stage(root: Path, bus: Bus | None = None) -> Iterator[Stage]:
     others = skill_threads()  # of an exhibition that other tests of the file share
     made = Stage(root, bus)
-    close = open_workshop(made.workshop)
+    unregister = register(made.workshop)
     try:
         yield made
     finally:
         made.runner.close()
-        close()
+        unregister()
+        made.workshop.close()
         until(lambda: skill_threads() <= others)
 
 

@@ -8,7 +8,7 @@ import pytest
 
 import lumen
 from lumen.features.skills.part import SkillsPart
-from lumen.features.skills.workshop import is_pretending
+from lumen.features.skills.workshop import taker_of
 from lumen.language.commands import Do
 from lumen.language.events import Event
 from lumen.language.stories import Visitor
@@ -60,6 +60,24 @@ def test_an_exhibition_performs_its_skills_after_a_second_one_of_the_project_has
         meet(exhibition)
         live(exhibition, lambda: "sprayed" in exhibition.configuration)
         assert exhibition.context == {"litres": 0.7}
+
+
+def test_of_two_exhibitions_of_a_project_each_performs_its_own_calls(tmp_path: Path) -> None:
+    root = project_in(tmp_path, SHORT)
+    story = root / STORY
+    story.write_text("steps: [{visitor: arrives}, {expect: {state: sprayed, context: {litres: 0.1}}}]\n", "utf-8")
+    with lumen.open(root, robot=Obedient()) as first, lumen.open(root, robot=Obedient()) as second:
+        for one in (first, second):
+            workshop = one.services[SkillsPart].workshop
+            assert taker_of("spray", one.project.verbs["spray"]) is workshop
+            assert one.reload().verdict == "unchanged"
+        edit(root, MANIFEST, "default: left", "default: right")
+        before = first.project.verbs["spray"]
+        assert first.reload().verdict == "applied"
+        assert taker_of("spray", first.project.verbs["spray"]) is first.services[SkillsPart].workshop
+        assert taker_of("spray", before) is second.services[SkillsPart].workshop
+        with lumen.open(root, robot="simulation", story="visitor") as pretending:
+            assert taker_of("spray", pretending.project.verbs["spray"]) is pretending.project
 
 
 def test_a_failing_skill_is_an_error_of_the_do_and_the_exhibition_lives_on(tmp_path: Path) -> None:
@@ -146,9 +164,9 @@ def test_a_story_on_a_robot_that_performs_skills_prints_that_it_does_not(tmp_pat
         trace = RehearsalTrace(setup.clock.now, lambda: project.machine)
         services = compose(Plan(project, setup, story=project.stories["visitor"], narrator=trace))
         start([services])
-        assert is_pretending(project.verbs["spray"])
+        assert taker_of("spray", project.verbs["spray"]) is project
         services.node.close()
-        assert not is_pretending(project.verbs["spray"])
+        assert taker_of("spray", project.verbs["spray"]) is None
         printed[type(setup.robot).__name__] = [text for _, who, text in trace.lines if who == "skills"]
     said = ["a story does not run their code: the robot only waits during `spray`"]
     assert list(printed.values()) == [said, []]

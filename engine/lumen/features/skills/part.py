@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from lumen.errors import BusError
-from lumen.features.skills.workshop import Workshop, open_workshop, pretend
+from lumen.features.skills.workshop import Workshop, register
 from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.ports import Bus, PretendsSkills
@@ -39,7 +39,7 @@ class SkillsPart(Part):
     ) -> None:
         self._bus, self._tell, self._happen = bus, tell, happen
         self.workshop = Workshop(project, bus, tell, self._report, self._failed)
-        self._close = open_workshop(self.workshop)
+        self._unregister = register(self.workshop)
         self._ending = threading.Event()
         self._thread = WatchedThread("lumen-skills", self._look)
         self._begun = False
@@ -65,7 +65,8 @@ class SkillsPart(Part):
 
     def close(self) -> None:
         self._ending.set()
-        self._close()
+        self._unregister()
+        self.workshop.close()
         if self._thread.started:
             self._thread.join(1.0)
 
@@ -97,16 +98,14 @@ class PretendedSkillsPart(Part):
     def __init__(self, project: Project, tell: Callable[[str, str], None], *, real: bool) -> None:
         self._names = ", ".join(f"`{name}`" for name in project.verbs)
         self._tell, self._real = tell, real
-        self._close: Callable[[], None] | None = pretend(project)
+        self._unregister = register(project)
 
     def begin(self, now: float) -> None:
         if self._real:
             self._tell("skills", f"a story does not run their code: the robot only waits during {self._names}")
 
     def close(self) -> None:
-        if self._close:
-            self._close()
-            self._close = None
+        self._unregister()
 
 
 def skills(services: Services) -> Part | None:

@@ -9,7 +9,7 @@ from lumen.errors import BusError, RobotFailedError
 from lumen.features.skills.manifest import Skill
 from lumen.features.skills.module_call import ModuleCall
 from lumen.features.skills.process import GRACE, SkillProcess
-from lumen.features.skills.workshop import Workshop, is_pretending, workshop_of
+from lumen.features.skills.workshop import Workshop, taker_of
 from lumen.language.added_verbs import default_result
 from lumen.language.causes import MessageOrigin
 from lumen.language.commands import Do, Say
@@ -36,9 +36,9 @@ def perform(call: SkillCall) -> Mapping[str, Any]:
     Without a workshop no program runs: the call takes the skill's usual time and returns the default result. Outside of
     stories, a warning is logged.
     """
-    workshop, skill = workshop_of(call.row), call.row.details
-    if workshop is None or not isinstance(skill, Skill):
-        if not is_pretending(call.row):
+    workshop, skill = taker_of(call.skill, call.row), call.row.details
+    if not isinstance(workshop, Workshop) or not isinstance(skill, Skill):
+        if workshop is None:
             _log.warning("`%s` was only pretended: no exhibition of its project is open in this process", call.skill)
         call.wait(time_taken(Do(call.skill, call.arguments, row=call.row)))
         return default_result(call.row)

@@ -396,42 +396,33 @@ def _read(root: Path, skill: Skill) -> _Code:
     return _Code(stamp, digest.hexdigest(), source)
 
 
-_open: list[Workshop] = []
-"""The workshops that receive calls, in the order in which they were opened."""
+_open: list[Workshop | Project] = []
+"""What receives calls: workshops, and projects whose skills an exhibition deliberately only pretends."""
 
 
-def open_workshop(workshop: Workshop) -> Callable[[], None]:
-    """Register the workshop for calls of its project's folder and robot; return the function that closes it.
+def register(taker: Workshop | Project) -> Callable[[], None]:
+    """Let a workshop receive calls, or have a project's skills pretended, as in a story; return the function to undo it.
 
-    Of several open workshops of the same folder and robot, the newest receives the calls.
+    Undoing it twice does nothing more.
     """
 
-    def close() -> None:
-        with suppress(ValueError):  # it was closed before
-            _open.remove(workshop)
-        workshop.close()
+    def undo() -> None:
+        with suppress(ValueError):
+            _open.remove(taker)
 
-    _open.append(workshop)
-    return close
-
-
-_pretending: list[tuple[str, str]] = []
-"""The project's folder and the robot of each exhibition that deliberately only pretends its skills."""
+    _open.append(taker)
+    return undo
 
 
-def pretend(project: Project) -> Callable[[], None]:
-    """Record that this project's robot deliberately runs no skill's code; return the function that undoes this."""
-    key = (project.root, project.robot)
-    _pretending.append(key)
-    return lambda: _pretending.remove(key)
+def taker_of(skill: str, row: VerbRow) -> Workshop | Project | None:
+    """Return what receives this skill's calls: a workshop, a project that pretends it, or None if neither is open.
+
+    Of several exhibitions of one folder and robot, it is the one whose project has this row; else the newest, since a
+    reload replaces the rows.
+    """
+    takers = [one for one in _open if (_project(one).root, _project(one).robot) == (row.root, row.robot)]
+    return next((one for one in takers if _project(one).verbs.get(skill) is row), takers[-1] if takers else None)
 
 
-def is_pretending(row: VerbRow) -> bool:
-    """Return whether an exhibition of a skill's project and robot deliberately runs no code, as a story does."""
-    return (row.root, row.robot) in _pretending
-
-
-def workshop_of(row: VerbRow) -> Workshop | None:
-    """Return the open workshop of a skill's project and robot; None if there is none, as in a pretending story."""
-    of_row = (one for one in reversed(_open) if (one.project.root, one.project.robot) == (row.root, row.robot))
-    return next(of_row, None)
+def _project(taker: Workshop | Project) -> Project:
+    return taker.project if isinstance(taker, Workshop) else taker
