@@ -401,7 +401,7 @@ _open: list[Workshop | Project] = []
 
 
 def register(taker: Workshop | Project) -> Callable[[], None]:
-    """Let a workshop receive calls, or have a project's skills pretended, as in a story; return the function to undo it.
+    """Let a workshop receive calls, or have a project's skills pretended, as in a story; return the undoing function.
 
     Undoing it twice does nothing more.
     """
