@@ -26,6 +26,7 @@ globalThis.AudioContext = class {
 };
 """
 """Records the frequency of each sound instead of playing it."""
+ICON = "return document.querySelector('link[rel=icon]').href"
 LATER = "const now = Date.now; Date.now = () => now() + 3600e3;"
 """Sets the page's clock an hour ahead."""
 
@@ -50,8 +51,8 @@ def test_a_fall_is_seen_on_every_page_until_somebody_has_read_it(viewer: Viewer,
             viewer.click(f"nav a[href$='{page}']")
             viewer.shows("NAO: has fallen.", ".alarms")
         viewer.shows("look at the robot", ".connection[data-state=alarm]")
-        assert viewer.driver.title.startswith("⚠ NAO: has fallen · NAO: ")
-        assert "icon-alarm.svg" in viewer.run("return document.querySelector('link[rel=icon]').href")
+        until(lambda: viewer.driver.title.startswith("⚠ NAO: has fallen · NAO: "), HANG)
+        until(lambda: "icon-alarm.svg" in viewer.run(ICON), HANG)
         until(lambda: viewer.all(PAGES[page]), HANG)  # noqa: B023  called at once
         viewer.run(axe)
         assert viewer.driver.execute_async_script("axe.run().then((found) => arguments[0](found.violations))") == []
@@ -59,7 +60,7 @@ def test_a_fall_is_seen_on_every_page_until_somebody_has_read_it(viewer: Viewer,
     viewer.shows("Keep visitors away", ".notice.bad")
     viewer.click(".notice.bad button")
     until(lambda: viewer.text(".connection") == "live", HANG)
-    assert "⚠" not in viewer.driver.title
+    until(lambda: "⚠" not in viewer.driver.title, HANG)
 
 
 def test_an_alarm_is_heard_once_by_who_wants_a_sound(served: Served) -> None:
@@ -67,9 +68,10 @@ def test_an_alarm_is_heard_once_by_who_wants_a_sound(served: Served) -> None:
         viewer.open(served.console.address, "robot/NAO/day", ready=".day")
         viewer.click(".settings > button")
         viewer.click("#settings input[type=checkbox]")
-        until(lambda: len(viewer.run("return heard")) == 3, HANG)  # so that a person knows how it sounds
+        until(lambda: len(viewer.run("return heard")) >= 3, HANG)  # so that a person knows how it sounds
+        before = len(viewer.run("return heard"))
         fall(served)
-        until(lambda: len(viewer.run("return heard")) == 6, HANG)
+        until(lambda: len(viewer.run("return heard")) >= before + 3, HANG)
         viewer.click("nav a[href$=files]")
         viewer.shows("has fallen", ".alarms")
         assert viewer.run("return heard") == []

@@ -60,7 +60,7 @@ class Window:
         until(lambda: chromium.run("return document.readyState") == "complete", HANG)
         chromium.driver.set_script_timeout(HANG)
         chromium.driver.execute_async_script(COLLECT)
-        until(lambda: self.taken, HANG)
+        until(lambda: self.taken and self.state == "live", HANG)  # it is live after all of the first ones
         self.begun = self.taken
         """The positions that the page received first: those of the latest entries with a text, and the newest."""
 

@@ -86,8 +86,7 @@ def test_a_broker_that_is_away_is_said_and_gone_on_with(
                 assert browser.command("say", text="Hello").data["state"] == "unsent"
             own_broker.start()
             until(lambda: browser.robots[0]["connected"])
-            answer = browser.command("rest")
-            assert answer.data["state"] == "finished", answer.data
+            until(lambda: browser.command("rest").data["state"] == "finished")  # its robot may be heard of late
             until(lambda: "stop" in [event.data.get("heard") for event in stream.of("entry")])
         assert whole(stream.positions())
     finally:
@@ -96,10 +95,7 @@ def test_a_broker_that_is_away_is_said_and_gone_on_with(
 
 
 @pytest.mark.slow
-def test_a_robot_whose_process_is_gone_is_not_said_to_rest(
-    copy: Path, broker: RabbitMQ, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(commands, "SENT_TIMEOUT", SENT_TIMEOUT)
+def test_a_robot_whose_process_is_gone_is_not_said_to_rest(copy: Path, broker: RabbitMQ) -> None:
     command = [sys.executable, "-m", "lumen", "run", copy, "--bus", broker.url, "--robot", "recording", "--only"]
     environment = {**os.environ, "PYTHONUNBUFFERED": "1"}
     with (

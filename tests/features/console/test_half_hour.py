@@ -8,6 +8,8 @@ fall, a lost process and a lost broker.
 import sys
 from collections import defaultdict
 from collections.abc import Callable
+from contextlib import suppress
+from functools import partial
 from itertools import cycle
 from random import Random
 from statistics import median, quantiles
@@ -107,13 +109,25 @@ class Operator:
 
     def presses(self, selector: str) -> None:
         def pressed() -> bool:
-            try:
-                self._chromium.find(selector).click()
-            except WebDriverException:  # it was drawn anew meanwhile
-                return False
-            return True
+            with suppress(WebDriverException):  # it was drawn anew meanwhile
+                found = self._chromium.find(selector)
+                if found.is_enabled():  # the page is not away for a moment
+                    found.click()
+                    return True
+            return False
 
         until(pressed, HANG, every=LOOK)
+
+    def reads_notices(self) -> None:
+        """Press `read` until no notice is left."""
+
+        def none_left() -> bool:
+            with suppress(WebDriverException, IndexError):  # it was drawn anew meanwhile
+                self._chromium.all(".notice button")[0].click()
+            return not self.sees_now(".notice button")
+
+        until(lambda: self.sees_now(".notice button"), HANG, every=LOOK)
+        until(none_left, HANG, every=LOOK)
 
     def rests(self, *outcomes: str) -> None:
         self._chromium.quiet()
@@ -127,8 +141,9 @@ class Operator:
         self.sees_it_in("watching")
 
     def raises(self, event: str) -> None:
-        """Raise an event over the console, as a cue does."""
-        assert self._house.browser.command("event", event=event, robot="NAO").data["state"] == "finished"
+        """Raise an event over the console, as a cue does; again if a busy machine was too late to send it."""
+        raised = partial(self._house.browser.command, "event", event=event, robot="NAO")
+        until(lambda: raised().data["state"] == "finished", HANG)
 
 
 def broken_visitors(house: House, operator: Operator) -> None:
@@ -160,8 +175,7 @@ def a_fall(house: House, operator: Operator) -> None:
     operator.sees_it_in("watching")
     operator.is_alarmed("a fall", lambda: operator.raises("fallen"))
     operator.sees("The robot fell.", "Keep visitors away", "I fell")
-    operator.presses(".notice button")
-    operator.sees_no(".notice button")
+    operator.reads_notices()
     operator.looks_at()  # a notice that was read does not come again with the next page
     operator.sees("I am on my feet again")
     operator.sees_it_in("watching")

@@ -207,7 +207,7 @@ def test_who_does_not_read_poses_is_given_the_newest_only(
 
     monkeypatch.setattr(poses, "_placed", placed)
     first, second = asyncio.run(read())
-    assert int(second) == view.moved > int(first) + 900
+    assert int(first) + 900 < int(second) <= view.moved  # the robot moves too
 
 
 def test_a_robot_of_another_project_is_not_drawn_by_the_model_of_this_one(served: Served, hosted: Hosted) -> None:

@@ -90,10 +90,13 @@ def hall(mine: Hosted, console: str, viewer: Viewer) -> Hosted:
             viewer.all(".approval .actions button:last-child")[0].click()
         return not (mine.exhibition.loop.runtime.approvals.waiting or viewer.all(".approval"))
 
+    def back() -> bool:
+        if viewer.text(".leaf .state-name") == "stage":
+            viewer.type("b")  # the page ignores it while it is away
+        return "hall" in viewer.text(".leaf")
+
     until(decided, HANG)
-    if viewer.text(".leaf .state-name") == "stage":
-        viewer.type("b")
-    viewer.shows("hall", ".leaf")
+    until(back, HANG)
     return mine
 
 
@@ -130,11 +133,9 @@ def says_until_seen(viewer: Viewer, mine: Hosted, words: str, text: str) -> None
 
     def seen() -> bool:
         if mine.exhibition.configuration == {"stage"}:
-            viewer.type("b")
-            until(lambda: mine.exhibition.configuration == {"hall"}, HANG)
-        if not approvals.waiting:
+            viewer.type("b")  # the page ignores it until it shows this state
+        elif not approvals.waiting:
             says(mine, words)
-            until(lambda: approvals.waiting, HANG)
         return text in viewer.text(".countdown")
 
     until(seen, HANG)

@@ -10,6 +10,7 @@ from lumen.language.events import Event
 from tests.features.console.conftest import Hosted
 from tests.features.console.languages import english_on
 from tests.features.console.pages import Served
+from tests.features.console.test_alarms import ICON
 from tests.features.console.viewer import Viewer
 from tests.fetched import fetched
 from tests.rabbitmq import GivenBroker, RabbitMQ
@@ -99,9 +100,9 @@ def test_a_robot_that_needs_a_person_is_never_green(viewer: Viewer, wall: str, r
     wanted = {"Ani": ["has fallen", "waits for your GO"], "Budi": ["waits for Resume"], "NAO": ["runs"]}
     until(lambda: badges(viewer) == wanted, HANG)
     assert viewer.run("return document.querySelector('.tile[aria-label=Ani]').dataset.state") == "bad"
-    assert viewer.driver.title == "⚠ Ani: has fallen · Lumen"
-    assert "icon-alarm.svg" in viewer.run("return document.querySelector('link[rel=icon]').href")
-    assert viewer.text(".connection") == "look at the robot"
+    until(lambda: viewer.driver.title == "⚠ Ani: has fallen · Lumen", HANG)  # it is written after the tiles
+    until(lambda: "icon-alarm.svg" in viewer.run(ICON), HANG)
+    until(lambda: viewer.text(".connection") == "look at the robot", HANG)
     viewer.click(".tile[aria-label=Budi] .resume")
     viewer.click("dialog .strong")
     until(lambda: badges(viewer)["Budi"] == ["runs"], HANG)

@@ -77,12 +77,14 @@ class Viewer:
         until(lambda: text in self.text(selector), HANG)
 
     def click(self, selector: str) -> None:
-        """Click the first match; retry while the page draws it anew."""
+        """Click the first match; retry while the page draws it anew, or disables it as it is away for a moment."""
 
         def clicked() -> bool:
             with suppress(WebDriverException, IndexError):
-                self.all(selector)[0].click()
-                return True
+                found = self.all(selector)[0]
+                if found.is_enabled():
+                    found.click()
+                    return True
             return False
 
         until(clicked, HANG)
