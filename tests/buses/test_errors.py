@@ -25,6 +25,8 @@ from tests.exhibits import project
 from tests.rabbitmq import RabbitMQ
 from tests.waiting import HANG, until
 
+pytestmark = pytest.mark.usefixtures("patient_bus")
+
 
 class World(NamedTuple):
     """A broker, the local bus of a folder, and a port at which no program listens."""

@@ -65,7 +65,7 @@ class Hall:
         return ["configuration" in one for one in self.status().values()] == [True, True]
 
     def stands_in(self, name: str, state: str) -> bool:
-        return self.status()[name]["configuration"] == [state]
+        return self.status().get(name, {}).get("configuration") == [state]
 
     def close(self) -> None:
         for process in self.running:

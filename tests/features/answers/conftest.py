@@ -13,7 +13,7 @@ from lumen.features.answers.module import Answers
 from lumen.language.modules import ANSWERS, ModuleSettings
 from lumen.language.projects import Project
 from tests.features.answers.fake_model import FakeModel, Reply, fake_model
-from tests.waiting import Collector, until
+from tests.waiting import HANG, Collector, until
 
 
 @pytest.fixture(scope="session")
@@ -54,6 +54,7 @@ class Desk:
         self.bus.publish("lumen.NAO.ask", {**body, "passages": [], **more})
         ended = {"id": id}
         until(lambda: ended in self.answers.bodies)
+        assert self.module.settle(HANG)  # it has told all
         return [{k: v for k, v in one.items() if k != "id"} for one in self.answers.bodies if one["id"] == id][:-1]
 
     def said(self, *arguments: Any, **more: Any) -> list[str]:

@@ -29,6 +29,7 @@ def test_whatever_is_said_becomes_an_identity_that_can_be_sent_on(
 
 
 @pytest.mark.broker
+@pytest.mark.usefixtures("patient_bus")
 def test_a_foreign_message_keeps_what_it_says_and_gets_what_it_does_not(broker: RabbitMQ) -> None:
     bus, seen = connect(broker.url), Collector()
     bus.subscribe("lumen.a", seen)

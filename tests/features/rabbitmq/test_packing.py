@@ -120,7 +120,7 @@ def test_a_consumer_that_wants_two_images_a_second_gets_two(
             robot.advance(0.02)
             server.sample(tick / 50)
             if tick % 25 == 0:
-                until(lambda count=tick // 25 + 1: server.counts["slow"].published == count)
+                until(lambda count=tick // 25 + 1: server.counts["slow"].published == len(plain.of(SLOW)) == count)
         until(lambda: len(plain.of(SLOW)) == 20)
         assert (server.counts["image"].published, robot.drawn) == (1, 21), "one was to find out that nobody wants them"
         _, said, body = plain.of(SLOW)[1]

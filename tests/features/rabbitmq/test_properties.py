@@ -18,6 +18,8 @@ from tests.attack.messages import PROPERTIES, HostileMessage, Stranger, encoded,
 from tests.rabbitmq import RabbitMQ
 from tests.waiting import Collector, until
 
+pytestmark = pytest.mark.usefixtures("patient_bus")
+
 FAR = struct.pack(">Q", 2**63)
 POISON = {
     "no UTF-8": encoded(content_type=b"\xff", reply_to=b"\xff\xfe", correlation_id=b"\x80", message_id=b"\xc0"),

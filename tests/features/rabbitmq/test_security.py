@@ -16,6 +16,8 @@ from tests.certificates import certify
 from tests.rabbitmq import RabbitMQ
 from tests.waiting import Collector, until
 
+pytestmark = pytest.mark.usefixtures("patient_bus")
+
 
 @pytest.fixture(scope="module")
 def secure(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RabbitMQ]:

@@ -40,8 +40,12 @@ def observed(url: str) -> dict[str, Any]:
     note("unknown path", "GET", "/api/nothing")
     note("nothing runs", "GET", "/api/move/running")
     note("enable", "POST", "/api/motors/set_mode/enabled")
-    note("wake", "POST", "/api/move/play/wake_up")
-    note("wake runs", "GET", "/api/move/running")
+
+    def woken() -> object:
+        note("wake", "POST", "/api/move/play/wake_up")
+        return note("wake runs", "GET", "/api/move/running")
+
+    until(woken, what="it is asked while the move runs")
     until(lambda: not api.request("GET", "/api/move/running"), what="it is awake")
     found["awake"] = settled(api)
     found["target"] = note("set target", "POST", "/api/move/set_target", TARGET)

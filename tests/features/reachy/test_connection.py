@@ -103,7 +103,7 @@ def test_another_program_that_streams_is_noticed_and_the_head_taken_up_where_it_
 @patient
 def test_a_second_wake_ends_the_tail_of_going_to_sleep(awake: Driven, daemon: FakeDaemon) -> None:
     awake.robot.start("r", Rest())
-    awake.until(lambda: daemon.moves, "it goes to sleep")
+    awake.until(lambda: "/api/move/play/goto_sleep" in [path for path, _ in daemon.asked], "it goes to sleep")
     awake.robot.cancel("r")
     assert awake.answer("w", Wake()).name == "done.command.w"
     assert daemon.mode == "enabled"

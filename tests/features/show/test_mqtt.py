@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Callable, Iterator
+from contextlib import closing
 from typing import Any
 
 import pytest
@@ -137,6 +138,12 @@ def _reached(here: Stand, there: Device) -> bool:
     return bool(there.came)
 
 
+def _kept(port: int) -> tuple[str, bytes, bool]:
+    """Return the first mood that a new device gets: it may come live if it is there before the broker keeps it."""
+    with closing(Device(port, "hall/mood")) as device:
+        return device.wait(1)[0]
+
+
 @pytest.mark.broker
 def test_a_broker_that_is_away_is_told_once_and_comes_back(
     museum: Callable[..., Project], stand: Make, monkeypatch: pytest.MonkeyPatch
@@ -155,7 +162,9 @@ def test_a_broker_that_is_away_is_told_once_and_comes_back(
         assert here.told[1:] == ["messages on `lamp (MQTT)` are dropped: the broker is away"]
         assert module.refused == 1
         rabbitmq.start()
-        until(lambda: here.told[2:] == [f"{name} is back"])
+        until(lambda: here.told[-1] == f"{name} is back")  # a broker that starts may refuse once
+        there = len(here.told)
+        until(lambda: _kept(rabbitmq.mqtt) == ("hall/mood", b'{"name":"late"}', True))
         lamp = Device(rabbitmq.mqtt, "hall/lamp", "hall/mood")
         try:
             assert lamp.wait(1) == [("hall/mood", b'{"name":"late"}', True)]
@@ -166,8 +175,8 @@ def test_a_broker_that_is_away_is_told_once_and_comes_back(
         rabbitmq.kill()
         until(
             lambda: (
-                here.told[3:] == [f"{name} has closed the connection: Lumen keeps trying to reach it"]
-                or len(here.told) > 4
+                here.told[there:] == [f"{name} has closed the connection: Lumen keeps trying to reach it"]
+                or len(here.told) > there + 1
             )
         )
         assert all(name in line for line in here.told[2:])

@@ -105,7 +105,11 @@ def test_a_module_that_nobody_started_fails_the_skill(pumping: Stage, monkeypatc
 
 
 @pytest.mark.broker
-def test_a_module_on_another_machine_is_called_over_rabbitmq(tmp_path: Path, broker: RabbitMQ) -> None:
+@pytest.mark.usefixtures("patient_bus")
+def test_a_module_on_another_machine_is_called_over_rabbitmq(
+    tmp_path: Path, broker: RabbitMQ, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(module_call, "ACCEPTING", HANG)
     root = project_in(tmp_path, {"skills/pump.yaml": ("", MANIFEST)})
     here, there = connect(broker.url), connect(broker.url)
     Pump(there, {"result": {"litres": 3}})
