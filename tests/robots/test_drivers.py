@@ -11,7 +11,7 @@ from lumen.errors import LumenError, RobotError, UsageError
 from lumen.lint import check_files
 from lumen.project import load
 from lumen.project.files import read_files
-from lumen.run.driver import make_robot
+from lumen.run.driver import make_robot, robot_class
 from lumen.run.setup import robot_kind, set_up
 from tests import ROOT
 from tests.guarded import PIPE, STDOUT, run_guarded
@@ -46,6 +46,12 @@ def test_a_driver_of_the_project_is_a_robot(root: Path, capsys: pytest.CaptureFi
     assert setup.hall is None
     setup.robot.close()
     assert robot_kind("printer", root) == "printer"
+
+
+def test_a_driver_that_was_edited_is_imported_anew(root: Path) -> None:
+    for version in ("first", "second one"):
+        driver(root, f"{METHODS}    version = {version!r}\n")
+        assert vars(robot_class("own", root))["version"] == version
 
 
 def test_the_driver_of_lumen_yaml_performs_unless_another_robot_is_named(root: Path) -> None:

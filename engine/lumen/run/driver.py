@@ -105,8 +105,12 @@ def _imported(driver: str, module: str, root: Path) -> ModuleType:
 
 
 def _module_of(file: Path) -> ModuleType:
-    """Import a file of a project once; a hash of the path in the module's name keeps files of the same name apart."""
-    name = f"lumen_driver_{file.stem}_{sha256(str(file.absolute()).encode()).hexdigest()[:8]}"
+    """Import a file of a project, anew if it has changed.
+
+    A hash of the path and the content in the module's name keeps files of the same name, and versions of one, apart.
+    """
+    hash = sha256(str(file.absolute()).encode() + file.read_bytes()).hexdigest()
+    name = f"lumen_driver_{file.stem}_{hash[:8]}"
     if name in sys.modules:
         return sys.modules[name]
     spec = spec_from_file_location(name, file)
