@@ -1,5 +1,6 @@
 """The public modules raise a UsageError that explains wrong arguments."""
 
+import sys
 from collections.abc import Callable
 from math import inf, nan
 from pathlib import Path
@@ -149,5 +150,9 @@ def test_the_clock_of_an_interpreter_has_its_own_type(tmp_path: Path) -> None:
     from mypy import api
 
     (tmp_path / "typed.py").write_text(TYPED)
-    said, errors, code = api.run(["--strict", f"--cache-dir={KEPT}", str(tmp_path / "typed.py")])
+    limit = sys.getrecursionlimit()
+    try:
+        said, errors, code = api.run(["--strict", f"--cache-dir={KEPT}", str(tmp_path / "typed.py")])
+    finally:
+        sys.setrecursionlimit(limit)  # mypy raises it for the whole process
     assert (code, errors) == (0, ""), said
