@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from lumen.features.console import commands, poses
+from lumen.features.console import commands
 from lumen.robot.bounded_robot import BoundedRobot
 from lumen.run.exhibition import Exhibition
 from lumen.run.making.modules import ModulesPlan
@@ -111,9 +111,8 @@ class Shared:
 
 @pytest.fixture(autouse=True)
 def patient(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Let a command count as unsent, and a pose as lost, only after HANG, because a busy machine may be late."""
+    """Let a command count as unsent only after HANG, because a busy machine may send it late."""
     monkeypatch.setattr(commands, "SENT_TIMEOUT", HANG)
-    monkeypatch.setattr(poses, "POSE_TIME", HANG)
 
 
 @pytest.fixture(scope="module")

@@ -6,6 +6,7 @@ from collections.abc import AsyncIterator
 import orjson
 
 from lumen.errors import LumenError
+from lumen.features.console.job_promises import JOB_TIME
 from lumen.features.console.jobs import Jobs, why_none
 from lumen.features.console.known_robot import KnownRobot
 from lumen.features.console.requests import DeniedError
@@ -15,8 +16,6 @@ from lumen.upkeep.judge_process import JudgeProcess, NoAnswerError
 PERIOD = 1 / 15
 """The shortest time between two poses [s]."""
 HEARTBEAT = 1.0
-POSE_TIME = 20.0
-"""The time limit of one pose [s]: the first one loads the model."""
 LINGER, RETRY = 5.0, 5.0
 """The time for which the process outlives the last viewer, and the pause before a failed one restarts [s]."""
 
@@ -83,7 +82,7 @@ class Poses:
             self._process = self._jobs.begin("poses", self._home)
         process = self._process
         try:
-            answer: bytes = await asyncio.to_thread(process.request, joints, POSE_TIME)
+            answer: bytes = await asyncio.to_thread(process.request, joints, JOB_TIME)
         except (LumenError, NoAnswerError) as error:
             self._process = None
             process.end()
