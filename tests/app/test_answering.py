@@ -4,10 +4,14 @@ from pathlib import Path
 from typing import Any
 
 from lumen.bus.memory import MemoryBus
+from lumen.insight.explaining import RecordedStep
 from lumen.journal.journal_folder import JournalFolder
 from lumen.journal.journal_writer import JournalWriter
+from lumen.language.events import Event
+from lumen.language.iso_time import iso_time
 from lumen.ports import Message
-from lumen.run.answering import AnsweringThread
+from lumen.run.answering import AnsweringThread, answer
+from lumen.statechart import Machine, initial, step
 from tests.waiting import until
 
 
@@ -28,3 +32,16 @@ def test_a_fault_costs_the_question(tmp_path: Path) -> None:
     assert answers[0]["verdict"] == "refused"
     assert "ours" in answers[0]["reason"]
     assert answers[1] == {"well": True}
+
+
+def test_a_question_at_the_time_of_an_entry_includes_its_step() -> None:
+    """Pages and `lumen why` show times to the millisecond, and steps are between two of them."""
+    machine = Machine.from_dict({"id": "m", "states": {"a": {"on": {"face": "b"}}, "b": {"entry": {"say": "Hello"}}}})
+    first = RecordedStep(machine, None, initial(machine, epoch=1_796_000_000.0))
+    for at in (1.5, 1.5004, 1.50099):
+        steps = [
+            first,
+            RecordedStep(machine, first.step.snapshot, step(machine, first.step.snapshot, Event("face", at=at))),
+        ]
+        said = answer(steps, "why", "Hello", iso_time(1_796_000_000.0 + at))
+        assert said["chain"]

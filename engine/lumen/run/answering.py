@@ -22,6 +22,8 @@ MAX_WAITING_QUESTIONS = 20
 """The number of questions that may wait for an answer; further ones are dropped."""
 DAY = 86_400.0
 """The length of a day [s]."""
+MILLISECOND = 0.001
+"""What an entry's time in ISO 8601 leaves out at most [s]: a question about an entry includes its own step."""
 MAX_QUESTION = 500
 """The greatest length of the text to explain [characters]; the rest is cut off."""
 AnswerMaker = Callable[[], dict[str, Any]]
@@ -62,7 +64,7 @@ def _until(steps: Sequence[RecordedStep], at: str) -> float:
     moment = moment_of(at)
     if not steps:
         raise TooLongAgoError("no steps from that time are in memory")
-    until = _on_its_day(moment - steps[-1].step.snapshot.epoch, steps[0].at, steps[-1].at)
+    until = _on_its_day(moment + MILLISECOND - steps[-1].step.snapshot.epoch, steps[0].at, steps[-1].at)
     if until < steps[0].at:
         first = datetime.fromtimestamp(steps[0].step.snapshot.epoch + steps[0].at)
         raise TooLongAgoError(f"the steps in memory begin at {first:%H:%M:%S}: ask about a later time")

@@ -16,7 +16,6 @@ from lumen.features.console.people import Role
 from lumen.features.console.requests import DeniedError, Reception, as_json
 from lumen.insight.replay.entries import HOWS
 from lumen.language.command_data import started
-from lumen.language.iso_time import iso_time, time_of
 from lumen.language.operator_requests import WHY
 
 SAID_BY_AN_OPERATOR = "says “"
@@ -56,8 +55,7 @@ class Sentences:
     async def _hint(self, view: KnownRobot, id: str, entry: Mapping[str, Any]) -> dict[str, Any]:
         """Return the file and the line of the action behind a command, as `lumen why` finds them; empty if unknown."""
         try:
-            then = iso_time(time_of(str(entry.get("at_time"))) + 0.001)  # include the rest of the entry's millisecond
-            [first, *_] = (await self._past.explained(view, WHY, id, then))["chain"]
+            [first, *_] = (await self._past.explained(view, WHY, id, str(entry.get("at_time"))))["chain"]
         except (DeniedError, ValueError, KeyError):
             return {}
         return {"file": first["file"], "line": first["line"]} if first["file"] else {}
