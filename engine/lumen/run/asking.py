@@ -11,8 +11,8 @@ from lumen.ports import BlockableBus, Bus, ReturningBus
 
 OPERATOR_ANSWERS = OPERATOR_ANSWER
 """The key on which the answers of a running exhibition arrive."""
-FIRST_ANSWER_TIMEOUT = 10.0
-"""The longest wait for the first answer [s], because the exhibition may load files for it."""
+FIRST_ANSWER_TIMEOUT = 30.0
+"""The longest wait for the first answer [s]: the exhibition may load files for it, on a small, busy machine."""
 
 NOBODY = object()
 """Queued in place of an answer if the broker returned the message as undeliverable."""
