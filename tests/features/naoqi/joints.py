@@ -1,6 +1,7 @@
 """The fake's joints: ALMotion's tasks, each with its joints, a way through time, and the call that waits for it."""
 
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
@@ -79,7 +80,7 @@ class Joints:
         for task in self._tasks[:]:
             self._angles.update(task.way(min(now, task.end) - task.begin))
             if now >= task.end:
-                self._tasks.remove(task)
+                self._remove(task)
         for follower, leader in self.body.shared.items():
             self._angles[follower] = self._angles[leader]
         return dict(self._angles)
@@ -99,10 +100,14 @@ class Joints:
             return task.call.future
         return None
 
+    def _remove(self, task: Task) -> None:
+        with suppress(ValueError):  # another thread has removed it meanwhile
+            self._tasks.remove(task)
+
     def kill(self, names: Sequence[str]) -> None:
         """End the tasks that use one of these joints, which keep their present angles."""
         self.angles()
         for task in [t for t in self._tasks if not set(names).isdisjoint(t.names)]:
-            self._tasks.remove(task)
+            self._remove(task)
             if task.call:
                 task.call.end()
