@@ -23,7 +23,7 @@ MAX_WAITING_QUESTIONS = 20
 DAY = 86_400.0
 """The length of a day [s]."""
 MILLISECOND = 0.001
-"""What an entry's time in ISO 8601 leaves out at most [s]: a question about an entry includes its own step."""
+"""The precision of the times of entries [s]: they are cut, and a question about an entry includes its own step."""
 MAX_QUESTION = 500
 """The greatest length of the text to explain [characters]; the rest is cut off."""
 AnswerMaker = Callable[[], dict[str, Any]]

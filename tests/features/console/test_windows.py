@@ -46,7 +46,7 @@ UNREAD = """
 const later = setTimeout;
 globalThis.setTimeout = (run, after, ...more) => after === 2000 ? 0 : later(run, after, ...more);
 """
-"""Nobody has read the answer to Rest yet, however long the next page takes: the page does not forget it after 2 s."""
+"""Keeps the page from forgetting the answer to Rest after 2 s: the next page may take longer."""
 SEEN = "const seen = document.querySelector('main img'); return Boolean(seen && seen.complete && seen.naturalWidth);"
 PIXEL = f"/9j/4AAQSkZJRgABAQEASABIAAD/2wBDAP{'/' * 86}wgALCAABAAEBAREA/8QAFBABAAAAAAAAAAAAAAAAAAAAAP/aAAgBAQABPxA="
 """A JPEG of one pixel."""

@@ -397,7 +397,7 @@ def _read(root: Path, skill: Skill) -> _Code:
 
 
 _open: list[Workshop | Project] = []
-"""What receives calls: workshops, and projects whose skills an exhibition deliberately only pretends."""
+"""The receivers of calls: workshops, and projects whose skills an exhibition deliberately only pretends."""
 
 
 def register(taker: Workshop | Project) -> Callable[[], None]:
