@@ -210,6 +210,31 @@ def test_who_does_not_read_poses_is_given_the_newest_only(
     assert int(first) + 900 < int(second) <= view.moved  # the robot moves too
 
 
+def test_while_the_first_pose_is_computed_its_readers_hear_that_the_console_is_there(
+    served: Served, hosted: Hosted, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Pages give up on a stream that is silent for 3 s, and a small machine needs longer to load the model."""
+    monkeypatch.setattr("lumen.features.console.poses.HEARTBEAT", 0.01)
+    poses = served.console.site.sights.poses("NAO")
+
+    async def read() -> list[bytes]:
+        loaded = asyncio.Event()
+
+        async def placed(of: object) -> bytes:
+            await loaded.wait()
+            return b"pose"
+
+        monkeypatch.setattr(poses, "_placed", placed)
+        stream = poses.stream()
+        told = [await anext(stream) for _ in range(3)]
+        loaded.set()
+        while told[-1] != b"pose":
+            told.append(await anext(stream))
+        return told
+
+    assert set(asyncio.run(read())) == {b":\n\n", b"pose"}
+
+
 def test_a_robot_of_another_project_is_not_drawn_by_the_model_of_this_one(served: Served, hosted: Hosted) -> None:
     body = {"robot": "NAO2", "parts": ["robot"], "session": "s", "state": "here", "time": 0.0}
     with closing(served):  # other tests need a console that knows no other robot

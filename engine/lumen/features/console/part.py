@@ -66,16 +66,12 @@ class ConsolePart(Part):
         if (process := self._process) is None:
             return
         self._process = None
-        process.terminate()
-        try:
-            process.wait(END_TIMEOUT)
-        except subprocess.TimeoutExpired:
-            process.kill()
-            process.wait()
-        for pipe in (process.stdin, process.stdout):
-            if pipe:
-                with suppress(OSError):
-                    pipe.close()
+        with suppress(OSError), process:  # which closes its pipes
+            process.terminate()
+            try:
+                process.wait(END_TIMEOUT)
+            except subprocess.TimeoutExpired:
+                process.kill()
 
     def _begin(self, now: float) -> None:
         environment = dict(os.environ)

@@ -50,7 +50,8 @@ class Poses:
                 if view.moved != seen:
                     seen, waited = view.moved, 0.0
                     try:
-                        yield await self._placed(view)
+                        async for part in self._awaited(view):
+                            yield part
                     except DeniedError as error:
                         yield b"event: trouble\ndata: " + orjson.dumps({"reason": error.reason}) + b"\n\n"
                         await asyncio.sleep(RETRY)
@@ -66,6 +67,17 @@ class Poses:
     def _home(self) -> str:
         return self._watch.keys.home(self._robot)
 
+    async def _awaited(self, view: KnownRobot) -> AsyncIterator[bytes]:
+        """Yield the event with the current pose, and comments until it is computed: pages give up on a silent stream.
+
+        If its reader leaves, the computation continues for the next one.
+        """
+        placed = asyncio.ensure_future(self._placed(view))
+        placed.add_done_callback(lambda done: done.cancelled() or done.exception())  # else asyncio logs a traceback
+        while not (await asyncio.wait([placed], timeout=HEARTBEAT))[0]:
+            yield b":\n\n"
+        yield placed.result()
+
     async def _placed(self, view: KnownRobot) -> bytes:
         """Return the event with the current pose, computed once for all viewers; a comment if there is no pose."""
         async with self._turn:
@@ -78,9 +90,7 @@ class Poses:
 
     async def _asked(self, joints: bytes) -> bytes:
         """Return the process's answer; start one if necessary. Raises DeniedError if it fails."""
-        if self._process is None:
-            self._process = self._jobs.begin("poses", self._home)
-        process = self._process
+        process = self._process = self._process or self._jobs.begin("poses", self._home)
         try:
             answer: bytes = await asyncio.to_thread(process.request, joints, JOB_TIME)
         except (LumenError, NoAnswerError) as error:
