@@ -20,8 +20,8 @@ from typing import Any, NamedTuple
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
 from selenium.common.exceptions import WebDriverException
-from selenium.webdriver import ActionChains
 from selenium.webdriver.common.keys import Keys
+from selenium.webdriver.remote.webelement import WebElement
 from tests.features.console.conftest import Hosted
 from tests.features.console.pages import Served
 from tests.features.console.viewer import Viewer
@@ -80,20 +80,28 @@ class Person:
     def click(self, selector: str, text: str = "", *, held: bool = False) -> None:
         """Click the first visible match with this text as soon as there is one; hold it until the page reports it."""
 
-        def clicked() -> bool:
+        found: list[WebElement] = []
+
+        def there() -> bool:
             with suppress(WebDriverException):
-                if (found := self._viewer.driver.execute_async_script(FIND, selector, text)) is not None:
-                    self._began = self._began or monotonic()
-                    if not held:
-                        found.click()
-                    else:
-                        ActionChains(self._viewer.driver).click_and_hold(found).perform()
-                        until(lambda: self._viewer.text(".told"), HANG)
-                        ActionChains(self._viewer.driver).release().perform()
-                    return True
+                found[:] = filter(None, [self._viewer.driver.execute_async_script(FIND, selector, text)])
+            return bool(found)
+
+        def clicked() -> bool:
+            if not there():
+                return False
+            self._began = self._began or monotonic()
+            with suppress(WebDriverException):
+                found[0].click()
+                return True
             return False
 
-        until(clicked, HANG)
+        if held:
+            until(there, HANG)
+            self._began = self._began or monotonic()
+            self._viewer.hold(lambda: found[0] if there() else None, text)
+        else:
+            until(clicked, HANG)
         self._clicks += 1
 
     def type(self, *keys: str) -> None:

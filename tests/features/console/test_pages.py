@@ -5,7 +5,6 @@ from collections.abc import Iterator
 from contextlib import ExitStack, closing
 
 import pytest
-from selenium.webdriver import ActionChains
 from selenium.webdriver.common.keys import Keys
 
 from lumen.run import forking
@@ -239,8 +238,7 @@ def test_a_button_that_is_held_does_it_and_one_that_is_only_pressed_does_not(vie
     viewer.shows("End the visit", ".declared")
     viewer.click(".declared")
     assert "End the visit" not in viewer.text(".told")
-    ActionChains(viewer.driver).click_and_hold(viewer.all(".declared")[0]).perform()
-    viewer.shows("End the visit: done", ".told")
+    viewer.hold(lambda: viewer.all(".declared")[0], "End the visit: done")
     viewer.shows("goodbye", ".leaf")
     assert viewer.complaints() == []
 

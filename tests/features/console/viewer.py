@@ -1,6 +1,7 @@
 """Looks at the console's pages in Debian's Chromium, driven by selenium, without a window."""
 
 import json
+from collections.abc import Callable
 from contextlib import suppress
 from typing import Any
 
@@ -14,6 +15,8 @@ from tests.features.console.browser import DrivenBrowser
 from tests.servers import EVIL
 from tests.waiting import HANG, until
 
+HOLD = 10.0
+"""The time after which a held button that has done nothing is held anew [s]."""
 PRESSES = "return document.querySelector('rest-button[main]').presses"
 
 
@@ -88,6 +91,19 @@ class Viewer:
             return False
 
         until(clicked, HANG)
+
+    def hold(self, find: Callable[[], WebElement | None], text: str) -> None:
+        """Hold the element until the page reports this text; again if the page was away, or drew it anew, meanwhile."""
+
+        def held() -> bool:
+            with suppress(WebDriverException, AssertionError):
+                if (found := find()) and text not in self.text(".told"):
+                    ActionChains(self.driver).click_and_hold(found).perform()
+                    until(lambda: text in self.text(".told"), HOLD)
+            ActionChains(self.driver).release().perform()
+            return text in self.text(".told")
+
+        until(held, HANG)
 
     def type(self, *keys: str) -> None:
         ActionChains(self.driver).send_keys(*keys).perform()
