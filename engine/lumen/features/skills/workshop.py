@@ -420,7 +420,7 @@ def taker_of(skill: str, row: VerbRow) -> Workshop | Project | None:
     Of several exhibitions of one folder and robot, it is the one whose project has this row; else the newest, since a
     reload replaces the rows.
     """
-    takers = [one for one in _open if (_project(one).root, _project(one).robot) == (row.root, row.robot)]
+    takers = [one for one in [*_open] if (_project(one).root, _project(one).robot) == (row.root, row.robot)]
     return next((one for one in takers if _project(one).verbs.get(skill) is row), takers[-1] if takers else None)
 
 
