@@ -132,7 +132,7 @@ def _home(kind: str) -> str:
 
 def misplaced(data: Any, kind: str, report: DocumentReport) -> bool:
     """Return True if data belongs in another kind of file and has no key of this kind; report such data."""
-    own = _KINDS.get(kind)  # None for a kind that a package added
+    own = _KINDS.get(kind)  # kinds of packages are not in it
     if own is None or not isinstance(data, Mapping) or own.owns(data):
         return False
     meant = next((name for name, other in _KINDS.items() if other is not own and other.is_meant(data)), None)
