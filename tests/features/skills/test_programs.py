@@ -146,7 +146,8 @@ def test_a_cancel_that_comes_too_late_does_no_harm(acting: Stage) -> None:
 
 
 def test_all_children_of_a_killed_program_end_whatever_they_do_to_get_away(acting: Stage) -> None:
-    child = "import os, time; os.setsid(); print(os.getpid(), flush=True); time.sleep(600)"
+    # `print` writes a number and the end of its line apart, between which another child may write.
+    child = "import os, time; os.setsid(); os.write(1, f'{os.getpid()}\\n'.encode()); time.sleep(600)"
     code(acting, f"for _ in range(3): subprocess.Popen([sys.executable, '-c', {child!r}])\ntime.sleep(600)")
     id = acting.start("act")
     acting.until(lambda: len(acting.told) == 3)
