@@ -316,8 +316,15 @@ def test_a_thread_that_the_machine_holds_back_is_waited_for() -> None:
 
     stand.server._broadcasts[Sense.JOINT]._encode = held
     stand.server.sample(0.0)
-    threading.Timer(0.1, release.set).start()
-    assert stand.server.settle()
+    (handed,) = stand.server._leaving
+    begun = handed.begun.wait
+
+    def wait(seconds: float) -> bool:
+        release.set()  # the thread runs only now, when the loop waits for its beginning
+        return begun(seconds)
+
+    handed.begun.wait = wait  # type: ignore[method-assign, assignment]
+    assert stand.server.settle(PATIENT)
     assert len(stand.of("joint")) == 1
     stand.server.close()
 
