@@ -164,10 +164,8 @@ class BrokerConnection:
                 self._opened.set_result(None)
             while self.serve():
                 pass
-        except (AMQPError, OSError) as error:
-            self._lost(error, since)
         except Exception as error:
-            if self._opened.done():
+            if self._opened.done() and not isinstance(error, (AMQPError, OSError)):
                 _log.exception("the bus failed unexpectedly")
             self._lost(error, since)
         finally:

@@ -88,10 +88,11 @@ class PollLoop(AbstractSelectorIOLoop):  # type: ignore[misc]  # pika is not typ
         self._selector.unregister(fd)
 
     def close(self) -> None:
-        """Close the selector and the sockets that wake it."""
-        self._selector.close()
-        self._hearing.close()
-        self._waking.close()
+        """Run the pending callbacks, by which pika closes its sockets; close the selector and what wakes it."""
+        while self._callbacks:
+            self.call([])
+        for each in (self._selector, self._hearing, self._waking):
+            each.close()
 
     def _heard(self, fd: int, events: int) -> None:
         with suppress(BlockingIOError):

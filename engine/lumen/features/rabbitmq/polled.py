@@ -7,7 +7,7 @@ import threading
 import time
 from collections import deque
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import ExitStack, closing, contextmanager, suppress
 from typing import Any
 
 from pika.exceptions import (
@@ -74,7 +74,7 @@ class PolledConnection:
         self._used.acquire()
         self._woken = threading.Event()
         self._error: BaseException | None = None
-        self._has: Callable[[int, bool], None] | None = None
+        self._has: Callable[[int, bool], object] = lambda number, several: None
         self._works: deque[Callable[[], None]] = deque()
         self.channel: Any = None
         self._connection: Any = None
@@ -223,16 +223,14 @@ class PolledConnection:
         self._error = error
 
     def close(self) -> None:
-        """Close the connection properly if possible, and the loop in any case."""
-        try:
-            if self._connection is not None and self._connection.is_open:
-                self._error = None
-                self._connection.close()
-                self.until(lambda: self._connection.is_closed)
-        except (AMQPError, OSError):
-            pass
-        finally:
-            self._loop.close()
+        """Close the connection properly if possible, and its socket and the loop in any case."""
+        with closing(self._loop), ExitStack() as after, suppress(AMQPError, OSError):
+            if self._connection is not None:
+                after.callback(self._connection.abandon)
+                if self._connection.is_open:
+                    self._error = None
+                    self._connection.close()
+                    self.until(lambda: self._connection.is_closed)
 
     def _open_channel(self) -> Any:
         opened: list[Any] = []
@@ -249,17 +247,13 @@ class PolledConnection:
             on_close_callback=lambda _, reason: self._failed(reason),
             custom_ioloop=self._loop,
             unread=lambda number: self.channel.basic_reject(number),
-            confirmed=self._confirmed,
+            confirmed=lambda number, several: self._has(number, several),
         )
         self._connection.add_on_connection_blocked_callback(
             lambda _, frame: self._block(shortage(str(frame.method.reason)))
         )
         self._connection.add_on_connection_unblocked_callback(lambda *_: self._block(""))
         self.until(lambda: opened)
-
-    def _confirmed(self, number: int, several: bool) -> None:
-        if self._has:
-            self._has(number, several)
 
     def _block(self, what: str) -> None:
         self.blocked = what

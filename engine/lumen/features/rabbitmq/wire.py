@@ -11,6 +11,7 @@ from struct import pack, unpack_from
 from typing import Any
 
 from pika import spec
+from pika.exceptions import AMQPConnectionError
 
 from lumen.features.rabbitmq.properties import MessageProperties, TolerantConnection, read_properties, short_text
 
@@ -53,7 +54,7 @@ class WireConnection(TolerantConnection):
     _frame_buffer: bytes
 
     def __init__(
-        self, *args: Any, unread: Callable[[int], None], confirmed: Callable[[int, bool], None], **kwargs: Any
+        self, *args: Any, unread: Callable[[int], None], confirmed: Callable[[int, bool], object], **kwargs: Any
     ) -> None:
         self.readers: dict[bytes, MessageReader] = {}
         self._unread, self._confirmed = unread, confirmed
@@ -81,6 +82,11 @@ class WireConnection(TolerantConnection):
             data, self._frames, self._size = b"".join(self._frames), [], 0
             if self._transport and not self.is_closed and (rest := data[self._sent(data) :]):
                 super()._adapter_emit_data(rest)
+
+    def abandon(self) -> None:
+        """Give up the socket, whatever the connection's state; a callback of the loop closes it."""
+        if not self.is_closed:
+            self._terminate_stream(AMQPConnectionError("it was given up"))
 
     def _proto_connection_made(self, transport: Any) -> None:
         super()._proto_connection_made(transport)
