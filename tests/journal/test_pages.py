@@ -11,7 +11,7 @@ from lumen.journal import journal_writer
 from lumen.journal.journal_file import read_journal
 from lumen.journal.journal_folder import JournalFolder, JournalTail
 from lumen.journal.journal_writer import JournalWriter
-from lumen.language.events import Event
+from lumen.language.events import CLOCK_SET, Event
 from lumen.language.people import PersonName
 from lumen.run.asking import operator_key
 from lumen.run.exhibition import Exhibition
@@ -137,6 +137,29 @@ def test_memory_is_bounded_by_entries_and_by_bytes() -> None:
     tail.add([b"x" * 2_000])
     assert tail.since(0, 10) == []
     assert tail.first == tail.next == sum(range(50)) + 1
+
+
+def test_a_page_has_its_date_also_after_the_entry_that_said_it(disk: Disk) -> None:
+    for folder in (disk, None):
+        writer = JournalWriter(folder)
+        writer.tail = JournalTail(10)
+        writer.start()
+        made = [initial(MACHINE, epoch=1_000.0)]
+        writer.jumped("start", PROJECT, made[0].snapshot)
+        for number in range(30):
+            name, data = (
+                (CLOCK_SET, {"epoch": 2_000.0, "timezone": ""}) if number == 14 else ("heard", {"name": "epoch"})
+            )
+            sendid = CLOCK_SET if name == CLOCK_SET else ""
+            made.append(step(MACHINE, made[-1].snapshot, Event(name, data, number * 1.0, sendid)))
+        tell(writer, made[1:21])
+        assert writer.flush(HANG)
+        dates = {at: journal_page(writer, at, 1)["epoch"] for at in range(writer.tail.first, writer.tail.next)}
+        assert dates == {at: 1_000.0 if at <= 15 else 2_000.0 for at in range(11, 21)}
+        tell(writer, made[21:])
+        assert writer.flush(HANG)
+        assert {journal_page(writer, at)["epoch"] for at in range(writer.tail.first, writer.tail.next)} == {2_000.0}
+        writer.close()
 
 
 def test_a_page_is_bounded_by_its_bytes() -> None:

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import BinaryIO
 
 from lumen.errors import JournalError
+from lumen.insight.replay.journal_clock import JournalClock
 from lumen.journal.journal_file import JOURNAL_SUFFIX, JournalHeader, entry_of, header_of, line_of, read_journal
 from lumen.journal.redaction import redacted
 from lumen.language.iso_time import file_stamp
@@ -94,6 +95,17 @@ PositionedLine = tuple[int, bytes]
 """The position of an entry, and its line of JSON."""
 
 
+def epoch_after(lines: Sequence[bytes]) -> float | None:
+    """Return the date of time 0 that these entries recorded last [s since 1970], else None."""
+    clock = JournalClock()
+    for line in reversed([line for line in lines if b'"epoch"' in line]):
+        with suppress(JournalError):
+            clock.of(entry_of(line, 0))
+        if clock.epoch:
+            return clock.epoch
+    return None
+
+
 class JournalTail:
     """The lines of the last entries of a run, whether or not they are on the disk; any thread may read them.
 
@@ -105,6 +117,8 @@ class JournalTail:
         self._lines: deque[bytes] = deque()
         self._size, self._next = 0, 0
         self._lock = threading.Lock()
+        self.epoch: float | None = None
+        """The exhibition's time 0 before the oldest entry in memory [s since 1970]; None before it is known."""
 
     @property
     def next(self) -> int:
@@ -127,7 +141,8 @@ class JournalTail:
             self._next += len(lines)
             self._size += sum(map(len, lines))
             while len(self._lines) > self._most or self._size > self._most_bytes:
-                self._size -= len(self._lines.popleft())
+                self._size -= len(gone := self._lines.popleft())
+                self.epoch = epoch_after([gone]) or self.epoch
 
     def since(self, position: int, most: int) -> list[PositionedLine]:
         """Return up to `most` entries from `position` on, or from the oldest in memory if the entry there is gone."""

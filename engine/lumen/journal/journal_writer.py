@@ -7,6 +7,7 @@ import time
 import uuid
 from collections import deque
 from collections.abc import Sequence
+from contextlib import suppress
 from typing import Any, BinaryIO
 
 from lumen.errors import ModuleError
@@ -232,10 +233,8 @@ class JournalWriter:
     def _end_file(self) -> None:
         file, self._file = self._file, None
         if file:
-            try:
+            with suppress(OSError):
                 file.close()
-            except OSError:
-                return
 
     def _forget(self, person: PersonName) -> None:
         self._end_file()

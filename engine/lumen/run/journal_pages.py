@@ -1,15 +1,14 @@
 """Pages of the journal from a position on, for requests on the bus."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 from lumen.errors import JournalError
 from lumen.insight.replay.entries import entry_data
-from lumen.insight.replay.journal_clock import JournalClock
 from lumen.journal.journal_file import entry_of, read_lines
-from lumen.journal.journal_folder import PositionedLine, headers
+from lumen.journal.journal_folder import PositionedLine, epoch_after, headers
 from lumen.journal.journal_writer import JournalWriter
 
 MAX_ENTRIES = 500
@@ -43,7 +42,7 @@ def journal_page(writer: JournalWriter, position: int, most: int = MAX_ENTRIES) 
         with suppress(JournalError):
             entries.append({"position": at, **entry_data(entry_of(line, at))})
     following = lines[-1][0] + 1 if lines else writer.tail.next
-    return {"entries": entries, "next": following, "run": writer.run, "epoch": _epoch_after(before)}
+    return {"entries": entries, "next": following, "run": writer.run, "epoch": epoch_after(before) or writer.tail.epoch}
 
 
 def _kept(folder: Path, position: int, most: int) -> tuple[list[bytes], list[PositionedLine]]:
@@ -61,18 +60,6 @@ def _kept(folder: Path, position: int, most: int) -> tuple[list[bytes], list[Pos
         before = before if found else lines[: max(position - first, 0)]
         found += enumerate(lines[max(position - first, 0) :][: most - len(found)], max(position, first))
     return before, found
-
-
-def _epoch_after(lines: Sequence[bytes]) -> float | None:
-    """Return the date of time 0 that these entries recorded last [s since 1970], else None."""
-    clock = JournalClock()
-    for line in reversed(lines):
-        if b'"epoch"' in line:
-            with suppress(JournalError):
-                clock.of(entry_of(line, 0))
-        if clock.epoch:
-            return clock.epoch
-    return None
 
 
 def _fitting(lines: Iterable[PositionedLine]) -> list[PositionedLine]:
