@@ -7,7 +7,7 @@ from lumen.bus.memory import MemoryBus
 from lumen.insight.explaining import RecordedStep
 from lumen.journal.journal_folder import JournalFolder
 from lumen.journal.journal_writer import JournalWriter
-from lumen.language.events import Event
+from lumen.language.events import CLOCK_SET, Event
 from lumen.language.iso_time import iso_time
 from lumen.ports import Message
 from lumen.run.answering import AnsweringThread, answer
@@ -45,3 +45,24 @@ def test_a_question_at_the_time_of_an_entry_includes_its_step() -> None:
         ]
         said = answer(steps, "why", "Hello", iso_time(1_796_000_000.0 + at))
         assert said["chain"]
+
+
+def test_a_question_about_a_time_before_the_clock_was_set_is_about_the_steps_of_that_time() -> None:
+    """The clock is set forward and back, as if the machine could not keep pace and its date was corrected then."""
+    machine = Machine.from_dict(
+        {"id": "m", "states": {"a": {"on": {"face": {"actions": {"say": "Hello {{ event.data }}"}}}}}}
+    )
+    day = 1_796_000_000.0
+    steps, dates = [RecordedStep(machine, None, initial(machine, epoch=day))], list[float]()
+    for at, epoch in ((10.0, day), (20.0, day + 45.0), (30.0, day - 5.0)):
+        for event in (
+            Event(CLOCK_SET, {"epoch": epoch, "timezone": ""}, at, CLOCK_SET),
+            Event("face", len(dates), at + 1.0),
+        ):
+            before = steps[-1].step.snapshot
+            steps.append(RecordedStep(machine, before, step(machine, before, event)))
+        dates.append(epoch + at + 1.0)
+    assert dates == [day + 11.0, day + 66.0, day + 26.0]
+    for number, date in enumerate(dates):
+        said = answer(steps, "why", "Hello", iso_time(date))
+        assert f"Hello {number}" in said["what"]

@@ -61,25 +61,28 @@ def _until(steps: Sequence[RecordedStep], at: str) -> float:
 
     Raises TooLongAgoError if it is before the first step in memory.
     """
-    moment = moment_of(at)
     if not steps:
         raise TooLongAgoError("no steps from that time are in memory")
-    until = _on_its_day(moment + MILLISECOND - steps[-1].step.snapshot.epoch, steps[0].at, steps[-1].at)
-    if until < steps[0].at:
-        first = datetime.fromtimestamp(steps[0].step.snapshot.epoch + steps[0].at)
-        raise TooLongAgoError(f"the steps in memory begin at {first:%H:%M:%S}: ask about a later time")
-    return until
+    # The time of day may have been set between two steps, as in a simulation that is slower than real time.
+    dates = [one.step.snapshot.epoch + one.at for one in steps]
+    moment = _on_its_day(moment_of(at) + MILLISECOND, dates[0], dates[-1])
+    known = [(date, one.step.snapshot.epoch) for one, date in zip(steps, dates, strict=True) if date <= moment]
+    if not known:
+        raise TooLongAgoError(
+            f"the steps in memory begin at {datetime.fromtimestamp(dates[0]):%H:%M:%S}: ask about a later time"
+        )
+    return moment - max(known)[1]
 
 
-def _on_its_day(until: float, first: float, last: float) -> float:
+def _on_its_day(moment: float, first: float, last: float) -> float:
     """Return a time later than the steps by a day or more moved to their date, with the same time of day.
 
     Stories run on a date of their own.
     """
-    if until - last < DAY:
-        return until
-    until -= (until - last) // DAY * DAY
-    return until - DAY if until - DAY >= first else until
+    if moment - last < DAY:
+        return moment
+    moment -= (moment - last) // DAY * DAY
+    return moment - DAY if moment - DAY >= first else moment
 
 
 class TooLongAgoError(UsageError):
