@@ -1,5 +1,6 @@
 """Forks of a run: a replay, and one with another event or with the saved files."""
 
+import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -8,10 +9,16 @@ import pytest
 
 import lumen
 from lumen.bus import connect
+from lumen.insight.replay.entries import JournalInput
+from lumen.journal.journal_folder import JournalFolder, JournalTail
+from lumen.journal.journal_writer import JournalWriter
 from lumen.language.events import Event
+from lumen.language.iso_time import iso_time
 from lumen.run import forking
 from lumen.run.exhibition import Exhibition
+from lumen.statechart import initial, step
 from tests.app.test_now import Asker, asker
+from tests.journal.test_writing import MACHINE, PROJECT, tell
 from tests.waiting import HANG
 
 MINE = """
@@ -98,6 +105,25 @@ def test_a_moment_says_where_too(ask: Asker) -> None:
     since = ask("now")["states"][0]["since"]
     assert ask("fork", at="2001-01-01T00:00:00Z")["was"] == ask("fork", position=0)["was"]
     assert ask("fork", at=since)["was"][0]["entered"] == ["hall"]
+
+
+def test_a_moment_is_found_in_the_files_if_memory_begins_after_it(tmp_path: Path) -> None:
+    writer = JournalWriter(JournalFolder(tmp_path, 1.0, 1.0))
+    writer.tail = JournalTail(40)
+    writer.start()
+    epoch = time.time() + 1_000.0  # later than the beginning of the file, however slow the machine is
+    made = [initial(MACHINE, epoch=epoch)]
+    writer.jumped("start", PROJECT, made[0].snapshot)
+    for number in range(90):
+        made.append(step(MACHINE, made[-1].snapshot, Event("heard", {"name": "Eko"}, float(number))))
+    tell(writer, made[1:])
+    assert writer.flush(HANG)
+    for at in (3.0, 89.0):
+        entries, position = forking._entries(writer, {"at": iso_time(epoch + at - 0.5)})
+        (found,) = [entry for entry in entries if entry.position == position]
+        assert isinstance(found, JournalInput)
+        assert found.event.at == at
+    writer.close()
 
 
 @pytest.mark.parametrize(

@@ -87,7 +87,7 @@ def _entries(journal: JournalWriter, body: Mapping[str, Any]) -> tuple[Sequence[
     if type(position) is int:
         return (remembered if _knows(remembered, position) else _kept(journal, position)), position
     moment = moment_of(str(at))
-    found = _after(remembered, moment)
+    found = _after(remembered, moment, journal.tail.epoch)
     if found is not None and _knows(remembered, found):
         return remembered, found
     for file, header in sorted(_files(journal), key=lambda row: row[1].first, reverse=True):
@@ -128,7 +128,10 @@ def _read(file: Path) -> Sequence[RecordedEntry]:
     return list(read_journal(file).entries)
 
 
-def _after(entries: Sequence[RecordedEntry], moment: float) -> int | None:
-    """Return the position of the first entry at or after a moment [s since 1970], else None."""
-    clock = JournalClock()
+def _after(entries: Sequence[RecordedEntry], moment: float, epoch: float | None = None) -> int | None:
+    """Return the position of the first entry at or after a moment [s since 1970], else None.
+
+    `epoch` is the date of time 0 before the entries, None if one of the first entries has it.
+    """
+    clock = JournalClock(epoch)
     return next((entry.position for entry in entries if clock.of(entry) >= moment), None)

@@ -9,10 +9,10 @@ from lumen.language.events import CLOCK_SET
 
 
 class JournalClock:
-    """A journal's wall clock; `epoch` is the time at its time 0 [s since 1970, in UTC]."""
+    """A journal's wall clock; `epoch` is the time at its time 0 [s since 1970, in UTC], 0 before it is known."""
 
-    def __init__(self) -> None:
-        self.epoch, self._timezone = 0.0, ""
+    def __init__(self, epoch: float | None = None) -> None:
+        self.epoch, self._timezone = epoch or 0.0, ""
 
     def of(self, entry: RecordedEntry) -> float:
         """Return the time of the next entry [s since 1970, in UTC]; call this for each entry in order."""
