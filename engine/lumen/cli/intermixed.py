@@ -28,10 +28,8 @@ class Help(argparse.HelpFormatter):
 
 
 def _columns() -> int:
-    try:
+    with suppress(ValueError):
         return int(os.environ.get("COLUMNS", "")) or 80
-    except ValueError:
-        pass
     try:
         return os.get_terminal_size(1).columns or 80
     except OSError:

@@ -206,10 +206,8 @@ def _decoded(line: bytes) -> Any:
 
     orjson is fast, but reads neither NaN nor lone surrogates, which `json` does.
     """
-    try:
+    with suppress(ValueError):
         return orjson.loads(line)
-    except ValueError:
-        pass
     try:
         return json.loads(line.decode("utf-8", "surrogatepass"))
     except (ValueError, RecursionError):

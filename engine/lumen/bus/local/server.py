@@ -73,16 +73,14 @@ class ClientConnection:
 
     def flush(self) -> None:
         """Send as much as the socket accepts now. Raises OSError if the connection is broken."""
-        while self.unsent:
-            first = self.unsent[0]
-            try:
+        with suppress(BlockingIOError):
+            while self.unsent:
+                first = self.unsent[0]
                 self.sent += self.wire.send(memoryview(first)[self.sent :])
-            except BlockingIOError:
-                return
-            if self.sent == len(first):
-                self.unsent.popleft()
-                self.bytes -= len(first)
-                self.sent = 0
+                if self.sent == len(first):
+                    self.unsent.popleft()
+                    self.bytes -= len(first)
+                    self.sent = 0
 
 
 class LocalBusServer:

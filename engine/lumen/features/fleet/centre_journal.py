@@ -4,6 +4,7 @@ import json
 import os
 import time
 from collections.abc import Mapping
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -25,10 +26,8 @@ class CentreJournal:
     def last(self) -> CentreState | None:
         """Return the last valid state in the journal, or None; a line that a crash cut off is ignored."""
         for row in reversed(self.rows()):
-            try:
+            with suppress(KeyError, TypeError, ValueError):
                 return state_from_json(row["state"])
-            except (KeyError, TypeError, ValueError):
-                continue
         return None
 
     def rows(self) -> list[Mapping[str, Any]]:
@@ -44,12 +43,10 @@ class CentreJournal:
             return []
         found = []
         for line in lines:
-            try:
+            with suppress(ValueError, RecursionError):
                 row = json.loads(line)
-            except (ValueError, RecursionError):
-                continue
-            if isinstance(row, Mapping):
-                found.append(row)
+                if isinstance(row, Mapping):
+                    found.append(row)
         return found
 
     def write(self, what: str, state: CentreState) -> str:
