@@ -1,6 +1,7 @@
 """Days of an exhibition, from the journal of this machine or from entries that the exhibition sends."""
 
 from collections.abc import Iterable, Iterator, Mapping
+from contextlib import suppress
 from datetime import date, datetime
 from pathlib import Path
 from typing import Any
@@ -21,7 +22,7 @@ from lumen.retrieval.scorers import words
 from lumen.run.one_robot import one_robot
 from lumen.run.replaying.journals import KeptBundles
 
-WINDOW = 86_400.0 * 1.5
+WINDOW = 86_400.0 * 2
 """A journal file can contain entries of a day only if it began within this time before the day's end [s]."""
 
 
@@ -38,9 +39,12 @@ class KeptDays:
         files = sorted(self._files(), key=lambda row: row[1])
         if not files:
             return None
-        dates = sorted({datetime.fromtimestamp(began).date() for _, _, began in files})
+        clock = JournalClock()
+        if first := next(_entries([file for file, _, _ in reversed(files)]), None):
+            clock.of(first)  # it has the exhibition's time zone, which may differ from this machine's
+        dates = sorted({clock.local(began).date() for _, _, began in files})
         chosen = wanted or dates[-1]
-        end = datetime.combine(chosen, datetime.max.time()).timestamp()
+        end = datetime.combine(chosen, datetime.max.time(), clock.local(0.0).tzinfo).timestamp()
         wanted_files = [file for file, _, began in files if end - WINDOW <= began <= end]
         found = day_of(_entries(wanted_files), self._machine, chosen)
         found.dates = sorted({*dates, *found.dates})
@@ -103,15 +107,11 @@ class KeptDays:
 
 def _entries(files: list[Path]) -> Iterator[RecordedEntry]:
     for file in files:
-        try:
+        with suppress(JournalError):
             yield from each_entry(file)
-        except JournalError:
-            continue
 
 
 def _recorded(page: Iterable[Mapping[str, Any]]) -> Iterator[RecordedEntry]:
     for one in page:
-        try:
+        with suppress(JournalError):
             yield read_entry(one, int(one["position"]))
-        except JournalError:
-            continue

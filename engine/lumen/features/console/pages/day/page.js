@@ -58,8 +58,7 @@ function Visits({ day, visit, choose }) {
  */
 function nearest(entries, moment) {
   const shown = entries.filter((entry) => entry.text);
-  const at = shown.findIndex((entry) => Date.parse(entry.at_time) > moment);
-  const middle = at < 0 ? shown.length : at;
+  const middle = shown.findLastIndex((entry) => Date.parse(entry.at_time) <= moment) + 1;
   return shown.slice(Math.max(0, middle - AROUND / 2), Math.max(0, middle - AROUND / 2) + AROUND);
 }
 
