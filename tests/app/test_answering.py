@@ -3,6 +3,8 @@
 from pathlib import Path
 from typing import Any
 
+import pytest
+
 from lumen.bus.memory import MemoryBus
 from lumen.insight.explaining import RecordedStep
 from lumen.journal.journal_folder import JournalFolder
@@ -13,6 +15,9 @@ from lumen.ports import Message
 from lumen.run.answering import AnsweringThread, answer
 from lumen.statechart import Machine, initial, step
 from tests.waiting import until
+
+DAY = 1_796_000_000.0
+"""A date [s since 1970]."""
 
 
 def test_a_fault_costs_the_question(tmp_path: Path) -> None:
@@ -52,7 +57,7 @@ def test_a_question_about_a_time_before_the_clock_was_set_is_about_the_steps_of_
     machine = Machine.from_dict(
         {"id": "m", "states": {"a": {"on": {"face": {"actions": {"say": "Hello {{ event.data }}"}}}}}}
     )
-    day = 1_796_000_000.0
+    day = DAY
     steps, dates = [RecordedStep(machine, None, initial(machine, epoch=day))], list[float]()
     for at, epoch in ((10.0, day), (20.0, day + 45.0), (30.0, day - 5.0)):
         for event in (
@@ -66,3 +71,30 @@ def test_a_question_about_a_time_before_the_clock_was_set_is_about_the_steps_of_
     for number, date in enumerate(dates):
         said = answer(steps, "why", "Hello", iso_time(date))
         assert f"Hello {number}" in said["what"]
+
+
+@pytest.mark.parametrize(
+    ("told", "asked", "counted"),
+    [
+        # It sleeps for 14 hours: time of the exhibition stands still.
+        ([(0.0, 0.0), (100.0, 0.0), (102.0, 50_400.0), (500.0, 50_400.0)], 18_000.0, 100.0),
+        ([(0.0, 0.0), (100.0, 0.0), (102.0, 50_400.0), (500.0, 50_400.0)], 51_000.0, 500.0),
+        # The clock was an hour ahead until it was set.
+        ([(0.0, 0.0), (20.0, 0.0), (21.0, -3_600.0), (3_500.0, -3_600.0), (4_500.0, -3_600.0)], 300.0, 3_500.0),
+        ([(0.0, 0.0), (20.0, 0.0), (21.0, -3_600.0), (3_500.0, -3_600.0), (4_500.0, -3_600.0)], 20.0, 20.0),
+        ([(0.0, 0.0), (20.0, 0.0), (21.0, -3_600.0), (30.0, -3_600.0)], 10.0, 0.0),
+    ],
+)
+def test_the_last_step_that_counts_is_that_of_the_time(
+    told: list[tuple[float, float]], asked: float, counted: float
+) -> None:
+    """Each step has a time on the exhibition's clock [s] and the change of its date since the first step [s]."""
+    machine = Machine.from_dict(
+        {"id": "m", "states": {"a": {"on": {"face": {"actions": {"say": "Hello {{ event.data }}"}}}}}}
+    )
+    steps = [RecordedStep(machine, None, initial(machine, epoch=DAY))]
+    for at, moved in told:
+        for event in (Event(CLOCK_SET, {"epoch": DAY + moved, "timezone": ""}, at, CLOCK_SET), Event("face", at, at)):
+            before = steps[-1].step.snapshot
+            steps.append(RecordedStep(machine, before, step(machine, before, event)))
+    assert f"Hello {counted:.0f}" in answer(steps, "why", "Hello", iso_time(DAY + asked))["what"]

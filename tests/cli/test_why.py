@@ -1,6 +1,7 @@
 """`lumen why` and `lumen why-not` explain an exhibition in Python, a running one, or a journal."""
 
 import json
+import time
 from collections.abc import Iterator
 from datetime import datetime, timedelta, timezone
 from pathlib import Path
@@ -185,3 +186,22 @@ def test_a_time_of_day_is_the_last_one() -> None:
     assert moment("2026-11-20T12:00:00+07:00", now) == "2026-11-20T05:00:00+00:00"
     with pytest.raises(UsageError, match=r"write 14:03"):
         moment("soon", now)
+
+
+@pytest.mark.parametrize(
+    ("now", "text", "meant"),
+    [
+        ((2026, 10, 25, 10), "22:00", "2026-10-24T20:00:59.999000+00:00"),
+        ((2026, 10, 25, 10), "01:30", "2026-10-24T23:30:59.999000+00:00"),
+        ((2027, 3, 28, 10), "22:00", "2027-03-27T21:00:59.999000+00:00"),
+        ((2027, 3, 28, 10), "01:30", "2027-03-28T00:30:59.999000+00:00"),
+    ],
+)
+def test_a_time_of_day_before_summer_time_changed_is_that_of_then(
+    now: tuple[int, int, int, int], text: str, meant: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with monkeypatch.context() as here:
+        here.setenv("TZ", "Europe/Berlin")
+        time.tzset()
+        assert moment(text, datetime(*now)) == meant
+    time.tzset()

@@ -48,7 +48,7 @@ def put(
 
     Return 0, or 1 if the question was refused.
     """
-    at = moment(options.at, datetime.now().astimezone()) if options.at else None
+    at = moment(options.at, datetime.now()) if options.at else None
     try:
         found = _asked(options, question, at)
     except UsageError as error:

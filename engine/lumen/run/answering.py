@@ -1,6 +1,7 @@
 """Answers to `why` and `why-not` from a running exhibition, made on a separate thread so that no tick is late."""
 
 import logging
+import math
 import queue
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
@@ -66,12 +67,16 @@ def _until(steps: Sequence[RecordedStep], at: str) -> float:
     # The time of day may have been set between two steps, as in a simulation that is slower than real time.
     dates = [one.step.snapshot.epoch + one.at for one in steps]
     moment = _on_its_day(moment_of(at) + MILLISECOND, dates[0], dates[-1])
-    known = [(date, one.step.snapshot.epoch) for one, date in zip(steps, dates, strict=True) if date <= moment]
+    known = [number for number, date in enumerate(dates) if date <= moment]
     if not known:
         raise TooLongAgoError(
             f"the steps in memory begin at {datetime.fromtimestamp(dates[0]):%H:%M:%S}: ask about a later time"
         )
-    return moment - max(known)[1]
+    if dates[-1] < moment < max(dates):  # a time before the clock was set back, and not reached again
+        known = [max(known, key=dates.__getitem__)]
+    chosen = steps[next((n for n in reversed(known) if dates[n] > moment - 2 * MILLISECOND), known[-1])]
+    later = min((one.at for one in steps if one.at > chosen.at), default=math.inf)
+    return min(moment - chosen.step.snapshot.epoch, math.nextafter(later, 0.0))
 
 
 def _on_its_day(moment: float, first: float, last: float) -> float:
@@ -126,11 +131,9 @@ class AnsweringThread:
     def _run(self) -> None:
         while (asked := self._waiting.get()) is not None:
             message, make = asked
-            try:
+            with suppress(BusError):  # the bus is closed, so no reply can be sent
                 self._drops.tell()
                 self._bus.reply(message, _made(make))
-            except BusError:
-                continue  # the bus is closed, so no reply can be sent
 
 
 def _made(make: AnswerMaker) -> Any:
