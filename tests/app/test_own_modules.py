@@ -3,6 +3,7 @@
 import os
 import re
 import shutil
+import signal
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -158,6 +159,20 @@ def test_close_ends_all_that_the_program_has_started(processes: "Starter") -> No
     assert all(map(alive, pids))
     process.close()
     until(lambda: not any(map(alive, pids)))
+
+
+@pytest.mark.parametrize("then", ["exit 3", "sleep 1000"])
+def test_a_program_in_a_group_of_its_own_that_keeps_the_output_open_holds_nobody_up(
+    processes: "Starter", then: str
+) -> None:
+    process = processes("sh", "-c", f"setsid sleep 600 & echo $!; {then}")
+    process.tick()
+    (pid,) = map(int, printed(process, 1))
+    if then == "exit 3":
+        assert ended(process) == f"ended with exit code 3: {pid}"
+    process.close()
+    assert alive(pid)
+    os.kill(pid, signal.SIGKILL)
 
 
 def test_the_program_ends_with_an_exhibition_that_is_killed(tmp_path: Path) -> None:

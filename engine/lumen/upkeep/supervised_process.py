@@ -109,7 +109,6 @@ class SupervisedProcess:
             _signal(process, signal.SIGTERM)
             with suppress(subprocess.TimeoutExpired):
                 process.wait(END_TIMEOUT)
-        _kill(process)
         self._release(process)
 
     def _start(self, now: float) -> str:
@@ -143,7 +142,6 @@ class SupervisedProcess:
     def _ended(self, process: "subprocess.Popen[bytes]", now: float) -> str:
         """Kill the processes that the ended one left behind, schedule the next start, and return how it ended."""
         self._process = None
-        _kill(process)
         self._release(process)
         if now - self.began >= STEADY:
             self._backoff.reset()
@@ -153,7 +151,7 @@ class SupervisedProcess:
         return f"{_ending(process.returncode)}{last}"
 
     def _read(self, output: IO[bytes]) -> None:
-        with suppress(OSError, ValueError):
+        with suppress(OSError, ValueError), output:
             while part := output.readline(MAX_LINE):
                 text = part.decode("utf-8", "replace").rstrip()
                 if not text:
@@ -166,15 +164,18 @@ class SupervisedProcess:
                         self._left_out += 1
 
     def _release(self, process: "subprocess.Popen[bytes]") -> None:
-        """Wait for the process, and close its pipes after their reader has read to the end."""
+        """Kill the process and its group, and wait for its end and, for up to END_TIMEOUT, for its last lines.
+
+        A program that it started in another group may keep the output open; the reader then reads on and closes it.
+        """
+        _kill(process)
         process.wait()
         if self._reader:
             self._reader.join(END_TIMEOUT)
             self._reader = None
-        for pipe in (process.stdin, process.stdout):
-            if pipe:
-                with suppress(OSError):
-                    pipe.close()
+        if process.stdin:
+            with suppress(OSError):
+                process.stdin.close()
 
 
 def _ending(code: int) -> str:
