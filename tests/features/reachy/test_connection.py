@@ -1,7 +1,10 @@
 """Reachy Mini's daemon goes away, comes back, and moves the robot for others."""
 
+from typing import NoReturn
+
 import pytest
 
+from lumen.errors import RobotLostError
 from lumen.language.commands import Look, Rest, Say, Wake
 from lumen.language.projects import Project
 from lumen.ports import Live, Perform
@@ -123,3 +126,18 @@ def test_two_robots_at_once(project: Project) -> None:
     assert daemons[1].joints["head_yaw"] == pytest.approx(0.0, abs=0.02)
     for each in (*robots, *daemons):
         each.close()
+
+
+def test_a_peer_that_speaks_first_is_an_answer_that_does_not_come(
+    project: Project, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Then websockets raises an AssertionError, but only if the data arrives before its own request has left."""
+
+    def connect(*arguments: object, **options: object) -> NoReturn:
+        raise AssertionError
+
+    daemon = FakeDaemon()
+    monkeypatch.setattr("websockets.sync.client.connect", connect)
+    with pytest.raises(RobotLostError, match="does not answer"):
+        Driven(project, daemon.url)
+    daemon.close()
