@@ -172,6 +172,30 @@ def test_a_second_answer_is_printed_and_ignored(acting: Stage) -> None:
     made.close()
 
 
+def test_the_end_of_a_program_is_noticed_if_its_child_keeps_the_output_open(acting: Stage) -> None:
+    made = SkillProcess("gone", ["sh", "-c", "setsid sleep 600 & exit 1"], str(acting.root), 100, acting.told.append)
+    made.begin("gone", {}, lambda: None)
+    assert made.await_end(HANG)
+    until(lambda: made.has_news())
+    assert made.take() == [{"ended": "it ended with exit code 1"}]
+    made.close()
+
+
+def test_a_warm_program_that_crashes_is_started_again_only_after_the_pause(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    now = 100.0
+    monkeypatch.setattr(workshop, "time", SimpleNamespace(monotonic=lambda: now, time=time.time))
+    manifest = "performed-by: {python: skills/act.py}\nwarm: true\n"
+    root = project_in(tmp_path, {"skills/act.yaml": ("", manifest), CODE: ("", f"{HEAD}    pass\n1 / 0\n")})
+    with stage(root) as made:
+        for crashes in (1, 2, 3):
+            for _ in range(3):
+                made.workshop.look()
+            assert made.workshop.states["act"]["crashes"] == len(made.reported) == crashes
+            now += 60.0
+
+
 def test_a_program_that_crashed_is_started_again_after_a_pause(acting: Stage, monkeypatch: pytest.MonkeyPatch) -> None:
     now = 100.0
     monkeypatch.setattr(workshop, "time", SimpleNamespace(monotonic=lambda: now, time=time.time))

@@ -180,19 +180,20 @@ class SkillProcess:
             # Prints are first: the lines before an answer are then shown before the answer has an effect.
             takers = {prints.fileno(): _Lines(self._print), answers.fileno(): _Lines(self._line)}
             while answers.fileno() in takers and not self.ended:
-                self._take(takers)
-            if prints.fileno() in takers:  # the prints before it closed its standard output
-                self._take({prints.fileno(): takers[prints.fileno()]}, DRAIN)
+                if not self._take(takers, GRACE) and self._popen.poll() is not None:
+                    break  # a child of the program keeps its output open
+            if takers:  # the prints before it closed its standard output, and what it wrote before it ended
+                self._take(takers, DRAIN)
         if not self.ended:
             self.kill(self._exit())
         self._put({"ended": self.ended})
 
-    def _take(self, takers: "dict[int, _Lines]", timeout: float | None = None) -> None:
-        """Wait at most `timeout` [s] for output and pass it to its taker; remove closed streams from `takers`.
+    def _take(self, takers: "dict[int, _Lines]", timeout: float) -> bool:
+        """Wait at most `timeout` [s] for output and pass it to its taker; return whether there was any.
 
-        A program with more than MAX_OUTPUT_BYTES is killed.
+        Closed streams are removed from `takers`. A program with more than MAX_OUTPUT_BYTES is killed.
         """
-        for stream in _ready(takers, select.POLLIN, timeout):
+        for stream in (ready := _ready(takers, select.POLLIN, timeout)):
             content = os.read(stream, 65_536)
             self._output += len(content)
             takers[stream].take(content)
@@ -200,6 +201,7 @@ class SkillProcess:
                 del takers[stream]
             elif self._output > MAX_OUTPUT_BYTES:
                 self.kill(f"it printed more than {MAX_OUTPUT_BYTES // MEGABYTE} MB during a call")
+        return bool(ready)
 
     def _stream(self, stream: IO[bytes] | None) -> IO[bytes]:
         assert stream

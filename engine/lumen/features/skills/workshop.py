@@ -144,7 +144,11 @@ class Workshop:
     def warm(self) -> None:
         """Start the programs of `warm` skills that have no process; report programs that can't be started."""
         for name, bench in list(self._benches.items()):
-            if bench.skill.warm and bench.skill.kind != "module" and not (bench.idle or bench.busy):
+            if (
+                bench.skill.warm
+                and bench.skill.kind != "module"
+                and not (bench.idle or bench.busy or bench.again > time.monotonic())
+            ):
                 try:
                     self._refresh(name, bench)
                     process = self._started(name, bench)
