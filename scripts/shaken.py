@@ -8,7 +8,8 @@
 Crowded means four busy loops beside the tests, which have the weight of one process for each worker. Half a core is a
 cgroup's quota, if this user may make one; else the first core alone, shared with a busy loop. `--only-real` takes the
 tests with a process, a broker or a browser. The run numbered i has the seed plus i; what a run printed is kept in
-`.cache/shaken`. The exit code is 1 if anything failed.
+`.cache/shaken`, and beside it each test's outcome as soon as it is known, with the traceback. The exit code is 1 if
+anything failed.
 All processes that it starts end with it, also on Ctrl-C.
 """
 
@@ -160,8 +161,12 @@ def main(words: Sequence[str] | None = None) -> int:
             runs.append(run := shaken(plan, arguments))
             print(f"{plan.condition} {plan.number} of {plan.of}, {told(run)}", flush=True)
     except KeyboardInterrupt:
-        print("interrupted: all that was started has been ended")
-    print("\n".join(summary(runs)), flush=True)
+        plan = plans[len(runs)]
+        passed, failed = read(log_of(plan).with_suffix(".jsonl"))
+        print(f"interrupted in {plan.condition} {plan.number} of {plan.of}: all that was started has been ended")
+        print("\n".join((f"seed {plan.seed}: {passed} passed, {len(failed)} failed until then", *sorted(failed))))
+    if runs:
+        print("\n".join(summary(runs)), flush=True)
     return int(len(runs) < len(plans) or any(run.failed for run in runs))
 
 
@@ -199,7 +204,7 @@ def selection(arguments: argparse.Namespace) -> list[str]:
 
 def shaken(plan: Plan, arguments: argparse.Namespace) -> Run:
     """Run the tests once, and end all processes that are left."""
-    log = LOGS / f"{plan.condition}-{plan.seed}.log"
+    log = log_of(plan)
     outcomes = log.with_suffix(".jsonl")
     outcomes.write_text("")
     command: list[object] = [
@@ -236,6 +241,11 @@ def shaken(plan: Plan, arguments: argparse.Namespace) -> Run:
     if code not in (0, 1) or (code == 1 and not failed):
         failed |= {f"the run itself (exit code {code})"}
     return Run(plan.condition, plan.seed, passed, frozenset(failed), wall, cpu, left, log)
+
+
+def log_of(plan: Plan) -> Path:
+    """Return the file that gets what a run prints; the outcome of each test is in the file with `.jsonl`."""
+    return LOGS / f"{plan.condition}-{plan.seed}.log"
 
 
 def finished(command: Sequence[object], group: Group, told: object) -> int:
@@ -280,9 +290,9 @@ def pinned(command: list[object]) -> list[object]:
 def read(outcomes: Path) -> tuple[int, set[str]]:
     """Return the number of tests that passed, and those that failed; skip a line that a kill has cut."""
     passed, failed = 0, set[str]()
-    for line in outcomes.read_text("utf-8").splitlines():
+    for line in outcomes.read_text("utf-8").splitlines() if outcomes.exists() else ():
         with suppress(ValueError):
-            test, outcome = json.loads(line)
+            test, outcome, *_ = json.loads(line)
             if outcome == "passed":
                 passed += 1
             elif outcome == "failed":

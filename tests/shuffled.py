@@ -35,23 +35,27 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 class Outcomes:
-    """Writes `[test, outcome]` for each test: failed if any part of it failed."""
+    """Writes `[test, outcome]` for each test, failed if any part of it failed; a failed one also has its traceback.
+
+    pytest itself prints tracebacks when a run ends, which may be hours later.
+    """
 
     def __init__(self, file: Path) -> None:
         self.file = file
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
         if report.when == "call" or report.outcome != "passed":
-            self._write(report.nodeid, report.outcome)
+            self._write(report)
 
     def pytest_collectreport(self, report: pytest.CollectReport) -> None:
         if report.failed:
-            self._write(report.nodeid, report.outcome)
+            self._write(report)
 
-    def _write(self, test: str, outcome: str) -> None:
+    def _write(self, report: pytest.TestReport | pytest.CollectReport) -> None:
         """Append a line, without the group that xdist puts behind a test's name."""
+        line = [re.sub(r"@[^]@]*$", "", report.nodeid), report.outcome]
         with self.file.open("a", encoding="utf-8") as file:
-            file.write(json.dumps([re.sub(r"@[^]@]*$", "", test), outcome]) + "\n")
+            file.write(json.dumps([*line, report.longreprtext] if report.failed else line) + "\n")
 
 
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter, config: pytest.Config) -> None:

@@ -81,11 +81,18 @@ def test_what_failed_is_listed_with_how_often_and_the_seeds(tmp_path: Path) -> N
 def test_outcomes_are_read_whole_and_cut(tmp_path: Path) -> None:
     file = tmp_path / "outcomes"
     writer = shuffled.Outcomes(file)
-    writer.pytest_runtest_logreport(SimpleNamespace(when="call", outcome="passed", nodeid="a::b[x@y]@tests/a"))  # type: ignore[arg-type]
-    writer.pytest_runtest_logreport(SimpleNamespace(when="teardown", outcome="failed", nodeid="a::c"))  # type: ignore[arg-type]
-    writer.pytest_runtest_logreport(SimpleNamespace(when="setup", outcome="passed", nodeid="a::d"))  # type: ignore[arg-type]
+    for name, when, outcome, text in (
+        ("a::b[x@y]@tests/a", "call", "passed", ""),
+        ("a::c", "teardown", "failed", "E   it was 7"),
+        ("a::d", "setup", "passed", ""),
+    ):
+        report: Any = SimpleNamespace(
+            nodeid=name, when=when, outcome=outcome, failed=outcome == "failed", longreprtext=text
+        )
+        writer.pytest_runtest_logreport(report)
     assert shaken.read(file) == (1, {"a::c"})
     assert '"a::b[x@y]"' in file.read_text("utf-8")
+    assert '["a::c", "failed", "E   it was 7"]' in file.read_text("utf-8")
     with file.open("a") as more:
         more.write('["a::e", "fai')
     assert shaken.read(file) == (1, {"a::c"})
