@@ -1,5 +1,6 @@
 """A server with a puppet for a robot, and a module that gives it commands."""
 
+import threading
 from collections.abc import Sequence
 from typing import Any
 
@@ -82,8 +83,23 @@ class Stand:
             self.server.sample(self.robot.now)
             assert self.server.settle(PATIENT)
 
+    def publish(self, key: str, body: Any, **options: Any) -> None:
+        """Publish a message, and wait until it has arrived."""
+        self.bus.publish(key, body, **options)
+        delivered(self.bus)
+
     def of(self, sense: str) -> list[Any]:
+        delivered(self.bus)
         return [m.body for m in list(self.heard.messages) if m.key == f"avatar.NAO.data.{sense}"]
+
+
+def delivered(bus: Bus) -> None:
+    """Wait until all that was published has arrived: a thread that is delivering also delivers for the others."""
+    arrived = threading.Event()
+    undo = bus.subscribe("lumen.test.mark", lambda _: arrived.set())
+    bus.publish("lumen.test.mark", None)
+    assert arrived.wait(HANG)
+    undo()
 
 
 def without(*senses: str) -> dict[str, Any]:
@@ -99,8 +115,9 @@ class Caller:
 
     def order(self, method: str, id: str = "7", **parameter: Any) -> None:
         body = {"type": "motion", "Method": method, "parameter": parameter}
-        self.stand.bus.publish("avatar.NAO.command", body, reply_to="lumen.me", correlation_id=id)
+        self.stand.publish("avatar.NAO.command", body, reply_to="lumen.me", correlation_id=id)
 
     @property
     def told(self) -> list[tuple[str, str]]:
+        delivered(self.stand.bus)
         return [(m.correlation_id, m.body) for m in self.answers.messages]

@@ -78,7 +78,7 @@ def test_what_is_over_at_once_is_answered_at_once() -> None:
 
 def test_a_command_without_reply_to_is_performed_all_the_same() -> None:
     stand = Stand()
-    stand.bus.publish("avatar.NAO.command", {"method": "rest"})
+    stand.publish("avatar.NAO.command", {"method": "rest"})
     stand.server.sample(0.0)
     assert stand.robot.started == [("m1", Rest())]
     assert stand.server.answer(Event("done.command.m1"))
@@ -193,10 +193,10 @@ def test_no_more_commands_wait_than_the_route_keeps_but_stopping_is_never_one_to
 
 def test_another_bundle_brings_its_own_key_for_commands() -> None:
     stand = Stand()
-    stand.bus.publish("avatar.NAO.command", {"method": "wakeup"})
+    stand.publish("avatar.NAO.command", {"method": "wakeup"})
     stand.server.use(project(**routed(key="avatar.{robot}.please")))
-    stand.bus.publish("avatar.NAO.command", {"method": "dance"})
-    stand.bus.publish("avatar.NAO.please", {"method": "sing"})
+    stand.publish("avatar.NAO.command", {"method": "dance"})
+    stand.publish("avatar.NAO.please", {"method": "sing"})
     stand.server.sample(0.0)
     assert [type(c).__name__ for _, c in stand.robot.started] == ["Wake", "Perform"]
     stand.server.close()
@@ -213,7 +213,7 @@ def test_where_the_bus_refuses_the_new_key_the_old_one_stays(caplog: pytest.LogC
     stand.bus.subscribe = refuse  # type: ignore[method-assign]
     stand.server.use(project(**routed(key="avatar.{robot}.please")))
     stand.bus.subscribe = subscribe  # type: ignore[method-assign]
-    stand.bus.publish("avatar.NAO.command", {"method": "rest"})
+    stand.publish("avatar.NAO.command", {"method": "rest"})
     stand.server.sample(0.0)
     assert stand.robot.started == [("m1", Rest())]
     assert "commands are still accepted on the old key `avatar.NAO.command`: you may not read that" in caplog.text
@@ -240,7 +240,7 @@ def test_another_bundle_brings_its_own_periods_and_motions() -> None:
         stand.server.sample(i * 0.02)
         assert stand.server.settle(PATIENT)
     assert {s: c.published for s, c in stand.server.counts.items()} == {"joint": 12, "sonar": 6}
-    stand.bus.publish("avatar.NAO.command", {"method": "wave"})
+    stand.publish("avatar.NAO.command", {"method": "wave"})
     stand.server.sample(1.2)
     assert stand.robot.started == [("m1", Perform(wave))]
     stand.server.close()
@@ -248,7 +248,7 @@ def test_another_bundle_brings_its_own_periods_and_motions() -> None:
 
 def test_another_robots_commands_are_not_ours() -> None:
     stand = Stand()
-    stand.bus.publish("avatar.PEPPER.command", {"method": "rest"})
+    stand.publish("avatar.PEPPER.command", {"method": "rest"})
     stand.server.sample(0.0)
     assert stand.robot.started == []
     stand.server.close()
@@ -257,7 +257,7 @@ def test_another_robots_commands_are_not_ours() -> None:
 def test_after_closing_no_command_is_taken() -> None:
     stand = Stand()
     stand.server.close()
-    stand.bus.publish("avatar.NAO.command", {"method": "rest"})
+    stand.publish("avatar.NAO.command", {"method": "rest"})
     stand.server.sample(0.0)
     assert stand.robot.started == []
 

@@ -15,6 +15,7 @@ from lumen.robot.deduplication_log import DEDUPLICATION_WINDOW, DeduplicationLog
 from lumen.robot.recording import RecordingRobot
 from lumen.robot.remote import RobotHost
 from tests.exhibits import BODY, messages, project
+from tests.server.stand import delivered
 from tests.waiting import Collector
 
 PROJECT = project(messages=messages())
@@ -34,12 +35,18 @@ class Desk:
     def order(self, id: str, method: str, key: str = "command", /, **more: Any) -> None:
         top = {name: more.pop(name) for name in ("replace",) if name in more}
         body = {"type": "motion", "method": method, "parameter": more, **top, **({"id": id} if id else {})}
-        self.bus.publish(f"avatar.NAO.{key}", body, reply_to="lumen.me", correlation_id="c")
+        self.publish(f"avatar.NAO.{key}", body, reply_to="lumen.me", correlation_id="c")
+
+    def publish(self, key: str, body: Any, **options: Any) -> None:
+        """Publish a message, and wait until it has arrived."""
+        self.bus.publish(key, body, **options)
+        delivered(self.bus._bus)
 
     def live(self, seconds: float) -> None:
         for _ in range(round(seconds / 0.02)):
             self.robot.advance(0.02)
             self.host.tick(self.robot.time)
+        delivered(self.bus._bus)
 
     def states(self, id: str) -> list[str]:
         return [body["state"] for body in self.reports.bodies if body["id"] == id]
@@ -74,7 +81,7 @@ def test_one_that_waits_for_its_parts_has_not_started(desk: Desk) -> None:
 
 def test_a_module_of_2015_hears_its_text_alone_and_who_watches_hears_all(desk: Desk) -> None:
     body = {"type": "motion", "Method": "moveTo", "parameter": {"x": 0.2, "y": 0, "tetha": 0}}
-    desk.bus.publish("avatar.NAO.command", body, reply_to="lumen.me", correlation_id="7")
+    desk.publish("avatar.NAO.command", body, reply_to="lumen.me", correlation_id="7")
     desk.live(3.0)
     assert desk.answers.bodies == ["command finished"]
     assert desk.states("7") == ["accepted", "started", "finished"]
@@ -174,7 +181,7 @@ def test_what_a_visitor_does_and_what_makes_no_sense(desk: Desk, caplog: pytest.
         ["visitor"], None, 7,
     ]  # fmt: skip
     for deed in deeds:
-        desk.bus.publish("avatar.NAO.hall", deed)
+        desk.publish("avatar.NAO.hall", deed)
     desk.live(0.1)
     assert [body["name"] for body in desk.noticed.bodies] == ["touched", "fallen"]
     assert len(caplog.records) == 7
@@ -185,6 +192,7 @@ def test_no_body_ends_the_server(desk: Desk, body: Any) -> None:
     desk.bus._bus.publish("avatar.NAO.stop", body)
     desk.bus._bus.publish("avatar.NAO.aim", body)
     desk.bus._bus.publish("avatar.NAO.command", {"method": "wakeUp"})
+    delivered(desk.bus._bus)
     desk.live(3.0)
     assert Wake() in desk.began
 

@@ -23,7 +23,7 @@ from lumen.ports import Message, Reading, Sense
 from lumen.robot.server import RobotServer
 from tests.exhibits import TACTILE, messages, project
 from tests.rabbitmq import RabbitMQ
-from tests.server.stand import DATE, FRAME, NAMES, PATIENT, PROJECT, Puppet, Stand, without
+from tests.server.stand import DATE, FRAME, NAMES, PATIENT, PROJECT, Puppet, Stand, delivered, without
 from tests.waiting import HANG, Collector, threads, until
 
 
@@ -92,10 +92,12 @@ def test_ticks_coarser_than_a_period_read_once_a_tick() -> None:
 def test_the_same_samples_leave_in_the_same_order(direct: bool) -> None:
     stand = Stand(direct=direct, **without("image"))
     stand.live(2.0)
+    delivered(stand.bus)
     keys = [m.key.rpartition(".")[2] for m in stand.heard.messages]
     assert keys[:4] == ["joint", "sonar", "tactile", "battery"]
     again = Stand(**without("image"))
     again.live(2.0)
+    delivered(again.bus)
     assert [m.key for m in again.heard.messages] == [m.key for m in stand.heard.messages]
     for each in (stand, again):
         each.server.close()
