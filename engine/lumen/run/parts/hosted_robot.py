@@ -45,17 +45,18 @@ class HostedRobotPart(RobotPart):
         narrator: Narrator,
         noticed: Callable[[Event], None] = lambda _: None,
     ) -> None:
+        # Commands, and with them questions to this part, arrive from the moment when the host listens.
+        self._narrator, self._others, self._setup = narrator, presence, setup
+        self._guard: BrainGuard | None = None
+        self._interrupted = False
+        self._noticed = noticed
+        self._journal = Journal(None)
         self._home = home_of(Path(project.root), project.one_of_several)
         kept = KeptHold(self._home)
         listeners = (_CommandsOfOthers(narrator, self), Urgency(setup), kept)
         self._host = RobotHost(project, setup.robot, bus, setup.hall, listeners)
         before = RunBefore(kept, self._home / DEDUPLICATION_FILE)
         super().__init__(project, bus, setup, (), presence, server=self._host.server, before=before)
-        self._narrator, self._others, self._setup = narrator, presence, setup
-        self._guard: BrainGuard | None = None
-        self._interrupted = False
-        self._noticed = noticed
-        self._journal = Journal(None)
 
     @property
     def follows(self) -> str:
