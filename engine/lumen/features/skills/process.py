@@ -182,8 +182,10 @@ class SkillProcess:
             while answers.fileno() in takers and not self.ended:
                 if not self._take(takers, GRACE) and self._popen.poll() is not None:
                     break  # a child of the program keeps its output open
-            if takers:  # the prints before it closed its standard output, and what it wrote before it ended
-                self._take(takers, DRAIN)
+            # The prints before it closed its standard output, and what it wrote before it ended; not if it was killed.
+            rest = {stream: taker for stream, taker in takers.items() if stream == prints.fileno() or not self.ended}
+            if rest:
+                self._take(rest, DRAIN)
         if not self.ended:
             self.kill(self._exit())
         self._put({"ended": self.ended})
