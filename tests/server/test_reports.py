@@ -1,19 +1,27 @@
 """Commands with an id of their own: reported on, performed once, asked after, called off, overtaken."""
 
 import time
+from collections.abc import Callable
+from contextlib import closing
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from lumen.bus import connect
+from lumen.bus.memory import MemoryBus
 from lumen.bus.validated import validated
+from lumen.clock.simulated import SimulatedClock
 from lumen.language.commands import Look, Rest, Say, Wake
-from lumen.ports import Perform
+from lumen.ports import MessageHandler, Perform
 from lumen.robot.command_receiver import ID_TAKEN
 from lumen.robot.deduplication_log import DEDUPLICATION_WINDOW, DeduplicationLog
 from lumen.robot.recording import RecordingRobot
 from lumen.robot.remote import RobotHost
+from lumen.run.narrator import Narrator
+from lumen.run.parts.hosted_robot import HostedRobotPart
+from lumen.run.presence import Presence
+from lumen.run.setup import Setup
 from tests.exhibits import BODY, messages, project
 from tests.server.stand import delivered
 from tests.waiting import Collector
@@ -247,3 +255,29 @@ def test_a_disk_that_takes_nothing_is_told_of_once(tmp_path: Path, caplog: pytes
     for id in ("a", "b"):
         ledger.note(id, "desk")
     assert [record.getMessage().count("cannot be written to") for record in caplog.records] == [1]
+
+
+class EagerBus(MemoryBus):
+    """A bus that delivers a stop and a command, each with an id, as soon as their keys have a subscriber."""
+
+    def subscribe(self, pattern: str, handler: MessageHandler) -> Callable[[], None]:
+        undo = super().subscribe(pattern, handler)
+        for key, id, method in (("stop", "s.1", "rest"), ("command", "c.1", "wakeUp")):
+            if pattern == f"avatar.NAO.{key}":
+                self.publish(pattern, {"type": "motion", "method": method, "parameter": {"by": "Ada"}, "id": id})
+        return undo
+
+
+def test_what_arrives_while_the_robot_is_made_is_not_lost(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+    it = project(messages=messages(), root=str(tmp_path))
+    robot, bus = RecordingRobot(BODY), validated(EagerBus(), it)
+    setup = Setup(robot, SimulatedClock(robot.advance), robot)
+    narrator = Narrator(lambda: 0.0, lambda: it.machine)
+    part = HostedRobotPart(it, bus, setup, Presence(bus, "NAO", ("robot",)), narrator)
+    with closing(part):
+        part.begin(0.0)
+        part.tick(0.0, ())
+        robot.advance(0.02)
+        assert part.stopped()
+        assert [command for _, command in robot.performed] == [Rest(by="Ada")]
+        assert not caplog.records
