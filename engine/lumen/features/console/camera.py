@@ -4,8 +4,8 @@ import asyncio
 import base64
 import binascii
 import time
-from collections.abc import AsyncIterator, Callable
-from contextlib import suppress
+from collections.abc import AsyncIterator, Callable, Iterator
+from contextlib import contextmanager, suppress
 from typing import Any
 
 from lumen.errors import BusError
@@ -36,18 +36,23 @@ class WatchedCamera:
         self.bus: Bus | None = None
         self.came = asyncio.Event()
         self._loop = asyncio.get_running_loop()
-        self._undo: Callable[[], None] | None = None
+        self._undo: asyncio.Future[Callable[[], None]] | None = None
 
     async def listen(self, bus: Bus, key: str) -> None:
         """Subscribe to the images on a bus. Raises BusError if the bus can't be reached."""
         self.bus = bus
-        self._undo = await asyncio.to_thread(bus.subscribe, key, self._take)
+        self._undo = asyncio.ensure_future(asyncio.to_thread(bus.subscribe, key, self._take))
+        await asyncio.shield(self._undo)  # a viewer who leaves meanwhile does not lose the way to end it
 
     def leave(self) -> None:
-        """End the subscription."""
+        """End the subscription, at once or when it has been made."""
         self.bus, undo, self._undo = None, self._undo, None
         if undo:
-            self._loop.run_in_executor(None, undo)
+            undo.add_done_callback(self._end)
+
+    def _end(self, undo: "asyncio.Future[Callable[[], None]]") -> None:
+        if not undo.cancelled() and not undo.exception():
+            self._loop.run_in_executor(None, undo.result())
 
     def _take(self, message: Message) -> None:
         if (frame := jpeg_in(message.body)) is not None:
@@ -82,11 +87,14 @@ class Cameras:
 
         The stream ends after SILENCE [s] without an image, or when the console closes.
         """
-        camera = self._cameras.setdefault(robot, WatchedCamera())
-        camera.lookers += 1
-        seen = camera.count
-        try:
+        with self._looking(robot) as camera:
+            seen = camera.count
             while not self._closing:
+                if camera.count != seen:
+                    seen = camera.count
+                    head = f"--{BOUNDARY}\r\nContent-Type: image/jpeg\r\nContent-Length: {len(camera.frame)}\r\n\r\n"
+                    yield head.encode() + camera.frame + b"\r\n"
+                    await asyncio.sleep(PERIOD)
                 await self._listen(robot, camera)
                 try:
                     async with asyncio.timeout(SILENCE):
@@ -94,45 +102,42 @@ class Cameras:
                             await camera.came.wait()
                 except TimeoutError:
                     return
-                if self._closing:
-                    return
-                seen = camera.count
-                head = f"--{BOUNDARY}\r\nContent-Type: image/jpeg\r\nContent-Length: {len(camera.frame)}\r\n\r\n"
-                yield head.encode() + camera.frame + b"\r\n"
-                await asyncio.sleep(PERIOD)
-        finally:
-            self._looked(camera)
 
     async def still(self, robot: str) -> bytes:
         """Return the newest image, empty if there is none or it is older than FRESH [s].
 
         The subscription remains for LINGER [s], so a later call can return an image.
         """
-        camera = self._cameras.setdefault(robot, WatchedCamera())
-        camera.lookers += 1
-        try:
+        with self._looking(robot) as camera:
             await self._listen(robot, camera)
-        finally:
-            self._looked(camera)
         return camera.frame if time.monotonic() - camera.at < FRESH else b""
 
     async def _listen(self, robot: str, camera: WatchedCamera) -> None:
-        """Subscribe to the images on the current bus, if any, unless already subscribed; ignore an unreachable bus."""
-        bus = self._watch.link.bus
-        if bus is None or bus is camera.bus:
-            return
-        with suppress(BusError):
-            await camera.listen(bus, self._watch.keys.of(robot).image)
+        """Subscribe to the images on the current bus, if any, unless already subscribed.
 
-    def _looked(self, camera: WatchedCamera) -> None:
-        """Remove one viewer; if it was the last one, end the subscription after LINGER [s]."""
-        camera.lookers -= 1
-        camera.wanted = time.monotonic()
-        asyncio.get_running_loop().call_later(LINGER, self._leave, camera)
+        If the bus can't be reached, the next call tries again.
+        """
+        if (bus := self._watch.link.bus) is None or bus is camera.bus:
+            return
+        try:
+            await camera.listen(bus, self._watch.keys.of(robot).image)
+        except BusError:
+            camera.leave()
+
+    @contextmanager
+    def _looking(self, robot: str) -> Iterator[WatchedCamera]:
+        """Count a viewer of a robot's camera; after LINGER [s] without one, end the subscription."""
+        camera = self._cameras.setdefault(robot, WatchedCamera())
+        camera.lookers += 1
+        try:
+            yield camera
+        finally:
+            camera.lookers -= 1
+            camera.wanted = time.monotonic()
+            asyncio.get_running_loop().call_later(LINGER, self._leave, camera)
 
     def _leave(self, camera: WatchedCamera) -> None:
-        lately = time.monotonic() - camera.wanted < LINGER * 0.9
-        if not camera.lookers and not lately and camera.bus:
+        if not camera.lookers and time.monotonic() - camera.wanted >= LINGER * 0.9:
             camera.leave()
 
 
