@@ -134,6 +134,13 @@ def test_a_process_of_poses_that_has_ended_says_why(error: Exception, reason: st
     assert poses._process is None, "the next look begins another one"
 
 
+def test_no_process_of_poses_is_begun_for_a_page_that_has_closed() -> None:
+    view = SimpleNamespace(moved=1, joints={}, robot="NAO")
+    poses = Poses(SimpleNamespace(robots={"NAO": view}), Mock(), "NAO")  # type: ignore[arg-type]
+    asyncio.run(poses._placed(view))  # type: ignore[arg-type]
+    assert poses._process is None
+
+
 @pytest.mark.process
 def test_entries_that_are_told_make_the_same_day(copy: Path) -> None:
     async def told() -> AsyncIterator[bytes]:
