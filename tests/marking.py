@@ -17,6 +17,7 @@ import pytest
 from tests.fetched import fetched
 from tests.guarded import Guarded, run_guarded
 from tests.rabbitmq import LentBroker, RabbitMQ
+from tests.suites import REAL
 
 PHYSICS = ("lumen.features.simulation", "mujoco", "dm_control")
 """Modules that use MuJoCo."""
@@ -25,6 +26,9 @@ NETWORK = ("http.", "socket", "lumen.features.console.serving", "lumen.features.
 BROWSER = "tests.features.console.browser"
 OWN_SERVERS = "own servers"
 """The group of tests with a broker of their own, which run one after another: one such broker at a time."""
+
+REAL_TIMEOUT = 3600.0
+"""The limit of a test with something real [s]: many waits that each end in time may take longer than other tests."""
 
 
 @pytest.hookimpl(tryfirst=True)
@@ -39,6 +43,8 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
                     item.add_marker(mark)
                 elif not item.get_closest_marker("xdist_group"):
                     item.add_marker(pytest.mark.xdist_group(OWN_SERVERS))
+            if has([item], *REAL) and not has([item], "soak"):
+                item.add_marker(pytest.mark.timeout(REAL_TIMEOUT))
     if config.getoption("loadgroup", False):
         items[:] = grouped(items)
 
@@ -60,8 +66,8 @@ def grouped(items: Iterable[pytest.Item]) -> list[pytest.Item]:
     return list(chain.from_iterable(turns))
 
 
-def has(group: Iterable[pytest.Item], mark: str) -> bool:
-    return any(item.get_closest_marker(mark) for item in group)
+def has(group: Iterable[pytest.Item], *wanted: str) -> bool:
+    return any(item.get_closest_marker(mark) for item in group for mark in wanted)
 
 
 def shared(item: pytest.Item) -> str:

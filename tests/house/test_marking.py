@@ -10,7 +10,7 @@ from hypothesis import given, strategies
 
 from lumen.features.simulation.offers import SimulatedRobot
 from tests.fetched import fetched
-from tests.marking import marks
+from tests.marking import REAL_TIMEOUT, marks
 from tests.rabbitmq import RabbitMQ
 
 
@@ -80,3 +80,10 @@ def test_and_not_from_strings(name: str, request: pytest.FixtureRequest) -> None
 def test_workers_are_told_of_groups(request: pytest.FixtureRequest) -> None:
     """If ids of tests could not be changed, groups would be ignored silently, and several brokers would run at once."""
     assert request.node.nodeid.endswith("@one") == request.config.getoption("loadgroup", False)
+
+
+@pytest.mark.process
+def test_a_real_test_may_take_longer(request: pytest.FixtureRequest) -> None:
+    timeout = request.node.get_closest_marker("timeout")
+    assert timeout is not None
+    assert timeout.args == (REAL_TIMEOUT,)
