@@ -167,7 +167,7 @@ class Progress:
         self._expected = self._expectation()
         if self._expected is not None:
             beside = f", {self._workers} at a time" if self._workers > 1 else ""
-            self._write(f"{tests:,} tests{beside}: takes about {duration(self._expected)}")
+            self._write(f"{tests:,} test{'s' * (tests != 1)}{beside}: takes about {duration(self._expected)}")
 
     def _expectation(self) -> float | None:
         """Return how long this run will take [s]: as the last one of the same words, else by its CPU time.

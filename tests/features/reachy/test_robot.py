@@ -140,9 +140,13 @@ def test_a_stop_ends_a_dance_where_it_is(awake: Driven, daemon: FakeDaemon, proj
 
 
 def test_speech_takes_its_time_and_the_volume_is_set_meanwhile(robot: Driven) -> None:
-    robot.robot.start("a", Say("x" * 20))
+    began = time.monotonic()
+    assert robot.answer("a", Say("x" * 20)).at - began > 1.0
+    robot.robot.start("b", Say("x" * 600))
     robot.answer("v", Volume(0.4))
-    assert robot.answer("a").at - robot._answered("v")[0].at > 1.0
+    assert not robot._answered("b")
+    robot.answer("s", Stop("say"))
+    assert "cancelled.command.b" in robot.names()
 
 
 def test_a_sound_is_uploaded_once_and_played(project: Project, tmp_path: Path) -> None:
