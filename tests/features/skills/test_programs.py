@@ -41,6 +41,11 @@ def code(made: Stage, body: str) -> None:
     made.write(CODE, HEAD + "".join(f"    {line}\n" for line in body.splitlines()))
 
 
+def until_there(file: Path) -> str:
+    """Return code with which a skill waits until this file exists."""
+    return f"while not os.path.exists({str(file)!r}): call.wait(0.01)"
+
+
 def alive(pid: int) -> bool:
     try:
         return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
@@ -57,18 +62,23 @@ def test_a_skill_gets_its_arguments_waits_and_returns_a_result(tmp_path: Path) -
 
 
 def test_one_process_performs_call_after_call_and_calls_at_once_have_several(acting: Stage) -> None:
-    code(acting, 'call.wait(0.1)\nprint(f"pid {os.getpid()}")')
+    code(acting, 'print(f"pid {os.getpid()}")\n' + until_there(acting.root / "go"))
+    (acting.root / "go").touch()
     acting.perform("act")
     acting.perform("act")
     assert len(set(acting.told)) == 1
-    for id in [acting.start("act"), acting.start("act")]:
+    (acting.root / "go").unlink()
+    ids = [acting.start("act"), acting.start("act")]
+    acting.until(lambda: len(acting.told) == 4)
+    (acting.root / "go").touch()
+    for id in ids:
         acting.end(id)
     assert len(set(acting.told)) == 2
 
 
 def test_one_call_too_many_at_once_is_refused(acting: Stage, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(workshop, "MAX_PROCESSES", 2)
-    code(acting, "print('ready')\ncall.wait(60)")
+    code(acting, "print('ready')\ncall.wait(1000)")
     for count in (1, 2):
         acting.start("act")
         acting.until(lambda count=count: acting.told == ["ready"] * count)
@@ -88,11 +98,11 @@ def test_one_call_too_many_at_once_is_refused(acting: Stage, monkeypatch: pytest
             "the program of `act` is gone: it ended with exit code 4 after the line `so long`",
         ),
         ("os.kill(os.getpid(), 11)", "the program of `act` is gone: it was ended by SIGSEGV"),
-        ("os.closerange(3, 20)\ntime.sleep(60)", "the program of `act` is gone: it closed its standard output"),
+        ("os.closerange(3, 20)\ntime.sleep(1000)", "the program of `act` is gone: it closed its standard output"),
         ("print('x' * 2_000_000)", "the program of `act` is gone: it printed more than 1 MB during a call"),
         ("while True: print('water')", "the program of `act` is gone: it printed more than 1 MB during a call"),
         ("while True: call.say('water')", "the program of `act` was killed: it had more than 200 texts and messages"),
-        ("x = bytearray(200_000_000)\ncall.wait(60)", "the program of `act` was killed: it used"),
+        ("x = bytearray(200_000_000)\ncall.wait(1000)", "the program of `act` was killed: it used"),
         ("x = bytearray(700_000_000)", "`act` failed: act.py:6: MemoryError"),
     ],
 )
@@ -106,9 +116,9 @@ def test_a_skill_that_fails_or_misbehaves_costs_its_verb_only(acting: Stage, bod
 @pytest.mark.parametrize(
     ("body", "killed"),
     [
-        ("print('ready')\ncall.wait(60)", False),
+        ("print('ready')\ncall.wait(1000)", False),
         ("print('ready')\nwhile not call.cancelled: time.sleep(0.01)", False),
-        ("print('ready')\ntime.sleep(60)", True),
+        ("print('ready')\ntime.sleep(1000)", True),
         ("print('ready')\nwhile True: pass", True),
         ("print('ready')\nos.dup2(os.open('/dev/null', 0), 0)\nthreading.Event().wait()", True),
     ],
@@ -147,8 +157,8 @@ def test_a_cancel_that_comes_too_late_does_no_harm(acting: Stage) -> None:
 
 def test_all_children_of_a_killed_program_end_whatever_they_do_to_get_away(acting: Stage) -> None:
     # `print` writes a number and the end of its line apart, between which another child may write.
-    child = "import os, time; os.setsid(); os.write(1, f'{os.getpid()}\\n'.encode()); time.sleep(600)"
-    code(acting, f"for _ in range(3): subprocess.Popen([sys.executable, '-c', {child!r}])\ntime.sleep(600)")
+    child = "import os, time; os.setsid(); os.write(1, f'{os.getpid()}\\n'.encode()); time.sleep(1000)"
+    code(acting, f"for _ in range(3): subprocess.Popen([sys.executable, '-c', {child!r}])\ntime.sleep(1000)")
     id = acting.start("act")
     acting.until(lambda: len(acting.told) == 3)
     pids = [int(line) for line in acting.told]
@@ -210,11 +220,12 @@ def test_a_program_that_crashed_is_started_again_after_a_pause(acting: Stage, mo
 
 
 def test_changed_code_is_used_at_the_next_call_and_nothing_is_broken_off(acting: Stage) -> None:
-    code(acting, "print('old')\ncall.wait(0.2)\nreturn {'version': 1}")
+    code(acting, f"print('old')\n{until_there(acting.root / 'go')}\nreturn {{'version': 1}}")
     first = acting.start("act")
     acting.until_told("old")
     code(acting, "return {'version': 2}")
     assert acting.perform("act") == {"version": 2}
+    (acting.root / "go").touch()
     assert acting.end(first) == {"version": 1}
 
 
@@ -260,7 +271,7 @@ def test_a_skill_reports_progress_speaks_and_publishes(acting: Stage) -> None:
 
 
 def test_a_removed_skill_is_ended_and_refused(acting: Stage) -> None:
-    code(acting, "print('ready')\ncall.wait(60)")
+    code(acting, "print('ready')\ncall.wait(1000)")
     id = acting.start("act")
     acting.until_told("ready")
     (acting.root / "skills/act.yaml").unlink()
