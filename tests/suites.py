@@ -10,6 +10,7 @@ connection. So does one that reads a project as `lumen run` does, for a process 
 import sys
 from collections.abc import Generator, Mapping
 from pathlib import Path
+from types import FrameType
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -59,6 +60,14 @@ def in_rest(item: pytest.Item) -> bool:
     return "soak" in marks or "rest" in marks or ("once" not in marks and bool(marks.intersection(REAL)))
 
 
+def importing() -> bool:
+    """Return whether a module is being imported: glfw then starts a process, in the first test that needs it."""
+    frame: FrameType | None = sys._getframe()
+    while frame and not frame.f_code.co_filename.startswith("<frozen importlib"):
+        frame = frame.f_back
+    return frame is not None
+
+
 class Touches:
     """Watches what each test starts and opens; a test that is neither `once` nor in the rest fails for it."""
 
@@ -71,7 +80,7 @@ class Touches:
         pytest.MonkeyPatch().setattr(validation_worker, "recall", self._recalled)
 
     def _hear(self, event: str, arguments: tuple[Any, ...]) -> None:
-        if event in TOUCHES:
+        if event in TOUCHES and not importing():
             self._found.add(TOUCHES[event])
 
     def _recalled(self, root: Path, files: Mapping[str, bytes]) -> "Project | None":
