@@ -5,10 +5,13 @@ from pathlib import Path
 
 import pytest
 
+from lumen.run import presence
+from lumen.run.parts import guard
 from tests.processes.troupe import STORIES, Troupe
 from tests.rabbitmq import RabbitMQ
 from tests.tour.conftest import copy as whole
 from tests.tour.conftest import project
+from tests.waiting import HANG
 
 __all__ = ["project", "whole"]
 
@@ -30,3 +33,10 @@ def troupe(copy: Path, broker: RabbitMQ) -> Iterator[Troupe]:
     one = Troupe(copy, broker.url)
     yield one
     one.close()
+
+
+@pytest.fixture
+def patient(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let no part count as lost because a slow machine delivers its signs of life late."""
+    for module, limit in ((presence, "LOST_AFTER"), (guard, "LOST_AFTER"), (guard, "BRAIN_TIMEOUT")):
+        monkeypatch.setattr(module, limit, HANG)

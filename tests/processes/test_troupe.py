@@ -20,6 +20,7 @@ from tests.waiting import HANG, Collector
 
 
 @pytest.mark.once
+@pytest.mark.usefixtures("patient")
 def test_four_parts_do_what_one_process_does(troupe: Troupe) -> None:
     photo = troupe.folder / "motions" / "photo.yaml"
     cues = "{at: 1.4s, pose: pose, say: {en: Cheese, id: Senyum}, sound: sounds/shutter.wav}"
@@ -49,6 +50,7 @@ def test_four_parts_do_what_one_process_does(troupe: Troupe) -> None:
     assert [cues_of(m) for m in played] == [cues_of(project.motions[m.name]) for m in played]
 
 
+@pytest.mark.usefixtures("patient")
 def test_now_is_told_by_a_brain_whose_robot_is_elsewhere(troupe: Troupe) -> None:
     _, brain = troupe.play()
     answers = Collector()
@@ -85,6 +87,7 @@ def cues_of(motion: MotionDefinition) -> list[tuple[float, str, object]]:
 
 
 @pytest.mark.soak
+@pytest.mark.usefixtures("patient")
 def test_without_a_motion_module_the_brain_does_it_itself_and_hands_it_over(troupe: Troupe) -> None:
     robot, brain = troupe.join("robot"), troupe.join("brain", story="short")
     visitor = troupe.join("visitor", story="short")
@@ -100,6 +103,7 @@ def test_without_a_motion_module_the_brain_does_it_itself_and_hands_it_over(trou
     assert sum(isinstance(command, Perform) for _, command in robot.body.performed) == 2
 
 
+@pytest.mark.usefixtures("patient")
 def test_a_brain_for_one_robot_moves_no_other(troupe: Troupe) -> None:
     one, other = troupe.join("robot"), troupe.join("robot", robot="KURNIA")
     brain = troupe.join("brain")
@@ -165,6 +169,7 @@ def test_a_network_that_is_cut_for_10_seconds_ends_safely_and_goes_on(troupe: Tr
     cable.close()
 
 
+@pytest.mark.usefixtures("patient")
 def test_a_robot_that_a_person_stopped_wakes_for_a_hand_on_its_head_and_for_resume(troupe: Troupe) -> None:
     robot, brain = troupe.play()
     reports = Collector()
@@ -212,6 +217,7 @@ def test_a_new_brain_of_a_robot_that_a_person_stopped_prints_no_command_as_perfo
     assert "robot    wakes" not in told
 
 
+@pytest.mark.usefixtures("patient")
 def test_files_that_the_brain_puts_in_force_are_in_force_everywhere(troupe: Troupe) -> None:
     robot, brain = troupe.play()
     motion = troupe.join("motion")
@@ -233,6 +239,7 @@ def test_files_that_the_brain_puts_in_force_are_in_force_everywhere(troupe: Trou
     assert {robot, motion} < set(troupe.members)
 
 
+@pytest.mark.usefixtures("patient")
 def test_nonsense_on_every_key_ends_nobody(troupe: Troupe, caplog: pytest.LogCaptureFixture) -> None:
     _, brain = troupe.play()
     troupe.join("motion")

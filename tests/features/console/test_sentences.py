@@ -43,7 +43,7 @@ states:
     do: {say: "{{ context.told }}"}
     on: {done.do.*: hall, error.do.*: hall}
   asked:
-    do: {ask: {question: event.data.result, within: 100ms, else: {say: {en: I do not know., id: Saya tidak tahu.}}}}
+    do: {ask: {question: event.data.result, within: 1h, else: {say: {en: I do not know., id: Saya tidak tahu.}}}}
     on: {done.do.*: hall, error.do.*: hall}
 lists:
   stops:

@@ -19,6 +19,8 @@ def test_the_active_states_are_told_and_marked(exhibition: Exhibition, copy: Pat
         text = client.open(TOUR).split("\n")
         told = client.notified("lumen/active")
         assert told["root"] == copy.as_uri()
+        while not told["states"]:  # an exhibition that answers late counts as one that does not run
+            told = client.notified("lumen/active")
         assert {"idle", "watching"} <= set(told["states"])
         assert main(["goto", "robot_lost", str(copy), "--yes"]) == 0
         while "robot_lost" not in told["states"]:
