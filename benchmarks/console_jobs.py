@@ -97,11 +97,11 @@ class Person:
             return False
 
         if held:
-            until(there, HANG)
+            self._viewer.until(there)
             self._began = self._began or monotonic()
             self._viewer.hold(lambda: found[0] if there() else None, text)
         else:
-            until(clicked, HANG)
+            self._viewer.until(clicked)
         self._clicks += 1
 
     def type(self, *keys: str) -> None:
@@ -111,14 +111,14 @@ class Person:
 
     def focused(self, selector: str) -> None:
         """Wait until such an element has the focus."""
-        until(lambda: self._viewer.run("return document.activeElement?.matches(arguments[0])", selector), HANG)
+        self._viewer.until(lambda: self._viewer.run("return document.activeElement?.matches(arguments[0])", selector))
 
     def sees(self, text: str, selector: str = "body") -> None:
         """Wait until the page shows the text in visible elements that match."""
-        until(lambda: text in self._viewer.text(selector), HANG, shown=lambda: self._viewer.text("body"))
+        self._viewer.shows(text, selector)
 
     def sees_no(self, selector: str) -> None:
-        until(lambda: not self._viewer.text(selector), HANG)
+        self._viewer.until(lambda: not self._viewer.text(selector))
 
 
 class Desk:
@@ -160,13 +160,15 @@ class Desk:
         self.viewer.click(".notice .strong")
         self.person.focused("#pin input")
         self.viewer.type(PIN, "\t", "Aisyah", "\n")
-        until(lambda: self.viewer.all(".leaf"), HANG)
+        self.viewer.until(lambda: self.viewer.all(".leaf"))
 
     def look(self) -> None:
         """Open the page Now, where each job begins."""
         self.viewer.driver.get(f"{self.address}robot/NAO")
-        until(lambda: self.viewer.all(".leaf"), HANG)
-        until(lambda: self.viewer.run("return document.querySelector('.connection')?.dataset.state") == "live", HANG)
+        self.viewer.until(lambda: self.viewer.all(".leaf"))
+        self.viewer.until(
+            lambda: self.viewer.run("return document.querySelector('.connection')?.dataset.state") == "live"
+        )
 
     def says(self, words: str) -> None:
         """A visitor says something to NAO."""
@@ -207,7 +209,7 @@ class Desk:
         applied = "lumen.post({ robot: 'NAO', command: 'apply' }, (state) => { globalThis.became = state; })"
         until(lambda: self.fetched("/api/files?robot=NAO").get("staged"), HANG)
         self.viewer.run(applied)
-        until(lambda: self.viewer.run("return globalThis.became") == "finished", HANG)
+        self.viewer.until(lambda: self.viewer.run("return globalThis.became") == "finished")
         self.look()
 
     def saved_with_an_error(self) -> None:

@@ -53,7 +53,7 @@ class Viewer:
         for kind in self._logs:
             self.log(kind)
         self.driver.get(address + path)
-        until(lambda: self.all(ready), HANG)
+        self.until(lambda: self.all(ready))
 
     def size(self, width: int, height: int = 800) -> None:
         """Make the page so large [px]."""
@@ -75,9 +75,13 @@ class Viewer:
         seen = "[...document.querySelectorAll(arguments[0])].filter(e => e.checkVisibility())"
         return str(self.run(f"return {seen}.map(e => e.innerText).join('\\n')", selector))
 
+    def until(self, condition: Callable[[], object]) -> None:
+        """Wait until the condition holds; a failure shows the text of the page."""
+        until(condition, HANG, shown=lambda: self.text("body"))
+
     def shows(self, text: str, selector: str = "body") -> None:
         """Wait until the visible elements that match contain the text."""
-        until(lambda: text in self.text(selector), HANG)
+        self.until(lambda: text in self.text(selector))
 
     def click(self, selector: str) -> None:
         """Click the first match; retry while the page draws it anew, or disables it as it is away for a moment."""
@@ -90,7 +94,7 @@ class Viewer:
                     return True
             return False
 
-        until(clicked, HANG)
+        self.until(clicked)
 
     def hold(self, find: Callable[[], WebElement | None], text: str) -> None:
         """Hold the element until the page reports this text; again if the page was away, or drew it anew, meanwhile."""
@@ -103,7 +107,7 @@ class Viewer:
             ActionChains(self.driver).release().perform()
             return text in self.text(".told")
 
-        until(held, HANG)
+        self.until(held)
 
     def type(self, *keys: str) -> None:
         ActionChains(self.driver).send_keys(*keys).perform()
@@ -116,7 +120,7 @@ class Viewer:
             self.type(Keys.ESCAPE, Keys.ESCAPE)
             return bool(self.run(PRESSES) > before)
 
-        until(pressed, HANG)
+        self.until(pressed)
 
     def complaints(self) -> list[str]:
         """Return the warnings and errors in the browser's log, without those of other tests' pages."""
