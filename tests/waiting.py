@@ -15,6 +15,9 @@ IDLE = 9.0
 LONGEST_PAUSE = 0.25
 """The longest such pause [s]."""
 
+APART = 'until [ "$(cut -d " " -f 6 /proc/$!/stat)" = $! ]; do :; done'
+"""In the shell: wait until the program that `setsid` begins in the background has a session of its own."""
+
 
 class Collector:
     """A handler that keeps the messages that it is handed, and lets a test wait for them."""

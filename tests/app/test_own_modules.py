@@ -32,7 +32,7 @@ from tests import ROOT
 from tests.copying import copied_project
 from tests.guarded import PIPE, STDOUT, Guarded
 from tests.rabbitmq import RabbitMQ
-from tests.waiting import Collector, until
+from tests.waiting import APART, Collector, until
 
 pytestmark = pytest.mark.process
 
@@ -165,7 +165,7 @@ def test_close_ends_all_that_the_program_has_started(processes: "Starter") -> No
 def test_a_program_in_a_group_of_its_own_that_keeps_the_output_open_holds_nobody_up(
     processes: "Starter", then: str
 ) -> None:
-    process = processes("sh", "-c", f"setsid sleep 600 & echo $!; {then}")
+    process = processes("sh", "-c", f"setsid sleep 1000 & {APART}; echo $!; {then}")
     process.tick()
     (pid,) = map(int, printed(process, 1))
     if then == "exit 3":

@@ -2,6 +2,7 @@
 
 import json
 import os
+import signal
 import sys
 import time
 from collections.abc import Iterator
@@ -18,7 +19,7 @@ from lumen.project import load
 from tests.features.skills.changing import project_in
 from tests.features.skills.stage import Stage, stage
 from tests.provided import program
-from tests.waiting import HANG, until
+from tests.waiting import APART, HANG, until
 
 pytestmark = pytest.mark.process
 
@@ -183,12 +184,14 @@ def test_a_second_answer_is_printed_and_ignored(acting: Stage) -> None:
 
 
 def test_the_end_of_a_program_is_noticed_if_its_child_keeps_the_output_open(acting: Stage) -> None:
-    made = SkillProcess("gone", ["sh", "-c", "setsid sleep 600 & exit 1"], str(acting.root), 100, acting.told.append)
+    command = ["sh", "-c", f"setsid sleep 1000 & {APART}; echo $! > child; exit 1"]
+    made = SkillProcess("gone", command, str(acting.root), 100, acting.told.append)
     made.begin("gone", {}, lambda: None)
     assert made.await_end(HANG)
     until(lambda: made.has_news())
     assert made.take() == [{"ended": "it ended with exit code 1"}]
     made.close()
+    os.kill(int((acting.root / "child").read_text()), signal.SIGKILL)
 
 
 def test_a_warm_program_that_crashes_is_started_again_only_after_the_pause(
