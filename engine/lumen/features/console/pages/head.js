@@ -118,7 +118,8 @@ function Sound() {
 function Settings() {
   const [open, set] = useState(false),
     button = useRef(/** @type {HTMLButtonElement | null} */ (null));
-  useEffect(() => {
+  // In the same frame as the sheet: Escape closes it as soon as it is seen.
+  useLayoutEffect(() => {
     if (!open) return undefined;
     const pressed = (/** @type {KeyboardEvent} */ event) => {
       if (event.key === "Escape" && !event.repeat) {

@@ -240,7 +240,8 @@ export const Choice = ({ legend, name, titled = true, value, options, choose }) 
 export function Dialog({ title, onClose, children, actions = null }) {
   const box = useRef(/** @type {HTMLDialogElement | null} */ (null)),
     heading = useId();
-  useEffect(() => {
+  // In the same frame as the dialog: keys reach it, and Escape closes it, as soon as it is seen.
+  useLayoutEffect(() => {
     const before = document.activeElement,
       field = /** @type {HTMLElement | null | undefined} */ (box.current?.querySelector("[autofocus]"));
     (field ?? box.current)?.focus();
@@ -248,7 +249,7 @@ export function Dialog({ title, onClose, children, actions = null }) {
       if (before instanceof HTMLElement) before.focus();
     };
   }, []);
-  useEffect(() => {
+  useLayoutEffect(() => {
     const pressed = (/** @type {KeyboardEvent} */ event) => {
       if (event.key === "Escape" && !event.repeat) onClose();
     };
