@@ -79,12 +79,12 @@ def test_a_second_click_with_the_same_name_writes_a_file_of_its_own(
     viewer.open(console, "robot/NAO/day", ready=".keep-story button", mode="author", language="id")
     keep(viewer, "Ani")
     viewer.shows("disimpan sebagai behaviors/stories/visit_2", ".keep-story")
+    viewer.until(lambda: not viewer.all(DIALOG))
     first = {file: file.read_bytes() for file in kept(visited.root)}
-    said = viewer.text(".keep-story > [role=status]")
     keep(viewer, "Ani")
-    until(lambda: viewer.text(".keep-story > [role=status]") != said, HANG)
+    viewer.until(lambda: kept(visited.root) - first.keys())
     [second] = kept(visited.root) - first.keys()
-    assert second.name in viewer.text(".keep-story > [role=status]")
+    viewer.shows(second.name, ".keep-story > [role=status]")
     assert {file: file.read_bytes() for file in first} == first
 
 
