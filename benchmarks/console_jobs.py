@@ -92,8 +92,7 @@ class Person:
                 return False
             self._began = self._began or monotonic()
             with suppress(WebDriverException):
-                found[0].click()
-                return True
+                return self._viewer.lands(found[0], selector)
             return False
 
         if held:

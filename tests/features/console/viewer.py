@@ -19,6 +19,13 @@ HOLD = 10.0
 """The time after which a held button that has done nothing is held anew [s]."""
 PRESSES = "return document.querySelector('rest-button[main]').presses"
 
+LANDING = """
+const [selector] = arguments, land = (click) => { window.landed = Boolean(click.target.closest(selector)); };
+window.landed = false;
+addEventListener("click", land, { capture: true, once: true });
+"""
+"""Notices whether the next click is on an element that matches."""
+
 
 class Viewer:
     """A window of the browser; `open` begins a page as a first visitor sees it.
@@ -89,12 +96,16 @@ class Viewer:
         def clicked() -> bool:
             with suppress(WebDriverException, IndexError):
                 found = self.all(selector)[0]
-                if found.is_enabled():
-                    found.click()
-                    return True
+                return found.is_enabled() and self.lands(found, selector)
             return False
 
         self.until(clicked)
+
+    def lands(self, element: WebElement, selector: str) -> bool:
+        """Click a match; return False if the page moved it meanwhile, so that the click went elsewhere."""
+        self.run(LANDING, selector)
+        element.click()
+        return self.run("return window.landed") is not False  # undefined on the page to which the click led
 
     def hold(self, find: Callable[[], WebElement | None], text: str) -> None:
         """Hold the element until the page reports this text; again if the page was away, or drew it anew, meanwhile."""
