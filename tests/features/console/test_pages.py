@@ -148,6 +148,24 @@ def entries(viewer: Viewer) -> list[dict[str, object]]:
     return list(viewer.driver.execute_async_script(script))
 
 
+NEWS_AT_ONCE = """
+const done = arguments[0];
+import("/pages/ui.js").then(({ html, redraw, render, useRedraw }) => {
+  let news = "none";
+  const box = document.createElement("p"), Shown = () => { useRedraw(); return news; };
+  render(html`<${Shown} />`, box);
+  news = "some";
+  redraw();
+  requestAnimationFrame(() => setTimeout(() => done(box.textContent), 0));
+});
+"""
+
+
+def test_news_between_the_first_drawing_and_its_frame_is_drawn(viewer: Viewer, served: Served) -> None:
+    viewer.open(served.console.address, "robot/NAO", ready=".leaf")
+    assert viewer.driver.execute_async_script(NEWS_AT_ONCE) == "some"
+
+
 @pytest.mark.parametrize("theme", ["light", "dark"])
 @pytest.mark.parametrize("page", PAGES)
 def test_axe_finds_nothing(viewer: Viewer, served: Served, page: str, theme: str) -> None:

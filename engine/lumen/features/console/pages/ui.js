@@ -87,7 +87,8 @@ export function redraw() {
 }
 export function useRedraw() {
   const [, set] = useState({});
-  useEffect(() => {
+  // In the same task as the drawing: what is told between the two would be drawn with the next news only.
+  useLayoutEffect(() => {
     redraws.add(set);
     return () => redraws.delete(set);
   }, []);
