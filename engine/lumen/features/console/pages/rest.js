@@ -1,7 +1,7 @@
 // @ts-check
 // Rest. The first thing that loads, and it needs nothing else of the page: the button is made here, so that there is
 // none which does nothing. Each press is a message of its own and says what became of it, also when nobody answers.
-/** @import { Answer, RobotSent, Tell } from "./types" */
+/** @import { Answer, Now, RobotSent, Tell } from "./types" */
 (() => {
   /** @type {Record<string, Record<string, string>>} */
   const WORDS = {
@@ -36,6 +36,7 @@
     SILENT = 12000,
     TWICE = 1500; // [ms]: an answer's first bytes, all of it; two presses of Escape
   const NEW = 5000; // [ms] after a press what a robot says of itself is newer than it
+  const AGAIN = 1000; // [ms] between two questions whether a robot rests after all
   const MOVES = 30000; // [ms] after a press a robot that moves does so again, even if this page never saw it at rest
   /** @type {Record<string, string>} */
   const SIGNS = { sending: "…", unsent: "✕", failed: "✕", unknown: "?", sent: "→", finished: "✓", after_all: "✓" };
@@ -141,8 +142,17 @@
    */
   const make = (tag, properties = {}) => Object.assign(document.createElement(tag), properties);
 
+  /**
+   * @param {Press} sent
+   * @param {RobotSent[]} robots
+   */
+  const meantBy = (sent, robots) => robots.filter((one) => sent.robot === "*" || one.robot === sent.robot);
+  /** @param {RobotSent[]} meant */
+  const rests = (meant) => meant.length > 0 && meant.every((one) => one.stopped && one.connected);
+
   class RestButton extends HTMLElement {
     presses = 0;
+    verifying = false;
     rested = false; // since the last press, in a report of the robots
     /** @type {Press | undefined} */
     sent;
@@ -239,17 +249,39 @@
       const { sent } = this;
       if (!robots || !sent || this.said.hidden) return;
       const passed = Date.now() - sent.at,
-        meant = robots.filter((one) => sent.robot === "*" || one.robot === sent.robot);
-      const rest = meant.length > 0 && meant.every((one) => one.stopped && one.connected);
+        meant = meantBy(sent, robots),
+        rest = rests(meant);
       const [told = ""] = this.told ?? [];
       if (ALARMS.includes(told)) {
-        if (rest && passed >= NEW) this.show("after_all");
+        if (rest && passed >= NEW) this.verify(sent, passed);
       } else if (RESTS.includes(told)) {
         // A report from before the press may come late: a robot moves again only if it was at rest in a report before.
         if (rest) this.rested = true;
         else if (passed >= (this.rested ? NEW : MOVES) && meant.some((one) => !one.stopped && one.connected))
           this.said.hidden = true;
       }
+    }
+
+    /**
+     * Correct an alarm if the robots still rest by what they answer now. On a slow machine what this page was told last
+     * may be of before the press, however long ago that was.
+     * @param {Press} sent
+     * @param {number} passed since the press [ms]
+     */
+    async verify(sent, passed) {
+      if (this.verifying) return;
+      this.verifying = true;
+      /** @type {Now | null} */
+      const now = await fetch("/api/now", { cache: "no-store", signal: AbortSignal.timeout(NEW) })
+        .then((answer) => answer.json())
+        .catch(() => null);
+      this.verifying = false;
+      if (sent !== this.sent || this.said.hidden || !ALARMS.includes(this.told?.[0] ?? "")) return;
+      if (now?.robots) this.robots = now.robots;
+      const meant = meantBy(sent, now?.robots ?? []),
+        since = Date.parse(now?.time ?? "") - passed + NEW; // by the console's clock
+      if (rests(meant) && meant.every((one) => Date.parse(one.heard ?? "") >= since)) this.show("after_all");
+      else setTimeout(() => this.heed(), AGAIN);
     }
 
     hint() {
