@@ -82,7 +82,7 @@ class Poses:
         """Return the event with the current pose, computed once for all viewers; a comment if there is no pose."""
         async with self._turn:
             moved = view.moved
-            if self._lookers and self._pose[0] != moved:  # a process for nobody would not be ended
+            if self._lookers and self._pose[0] != moved:  # without a page, nothing would end the process
                 links = await self._asked(orjson.dumps(dict(view.joints)))
                 told = b'event: pose\ndata: {"robot":%b,"links":%b}\n\n' % (orjson.dumps(view.robot), links)
                 self._pose = moved, b":\n\n" if links == b"null" else told
