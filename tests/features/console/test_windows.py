@@ -49,6 +49,19 @@ Object.assign(button, { sent: { robot: "NAO", at: Date.now() - 60000 } }).show("
 button.heed([robot]);
 """
 """Reports that the robot rests, as it did before the press; returns what is said after the page has asked."""
+OVERTAKEN = """
+const button = document.querySelector("rest-button[main]"), { fetch, setTimeout } = globalThis, held = [];
+globalThis.setTimeout = (run, after, ...more) => (after === 5000 ? 0 : setTimeout(run, after, ...more));
+globalThis.fetch = (path, options) =>
+  path === "/api/now" && !held.length ? new Promise((answer) => held.push(answer)) : fetch(path, options);
+for (const id of ["first", "second"]) {
+  Object.assign(button, { sent: { id, robot: "NAO", at: Date.now() - 60000 } }).show("unsent");
+  button.heed([{ robot: "NAO", connected: true, stopped: true }]);
+}
+button.heed = ((heed) => (robots) => { if (!robots) heed.call(button); })(button.heed); // the robot reports nothing new
+held[0](fetch("/api/now"));
+"""
+"""Presses again while the page asks whether the robot rests after all; then the answer comes, and no timer helps."""
 HELD = """
 const { fetch } = globalThis, answers = (globalThis.answers = []);
 const held = () => new Promise((answer) => answers.push((state) => answer(Response.json({ state }))));
@@ -188,6 +201,17 @@ def test_an_alarm_is_not_corrected_by_a_report_from_before_the_press(
     said = str(chromium.driver.execute_async_script(OUTDATED))
     assert "NOT SENT" in said
     assert not RESTS.search(said)
+
+
+@pytest.mark.slow
+def test_an_alarm_is_corrected_though_an_earlier_one_was_being_asked_about(
+    served: Served, hosted: Hosted, chromium: Chromium
+) -> None:
+    chromium.open(served.console.address)
+    chromium.rest()
+    until(lambda: "Rests" in chromium.said(), HANG)
+    chromium.run(OVERTAKEN)
+    until(lambda: "Rests after all" in chromium.said(), HANG)
 
 
 @pytest.mark.slow

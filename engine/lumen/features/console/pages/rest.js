@@ -276,12 +276,12 @@
         .then((answer) => answer.json())
         .catch(() => null);
       this.verifying = false;
-      if (sent !== this.sent || this.said.hidden || !ALARMS.includes(this.told?.[0] ?? "")) return;
       if (now?.robots) this.robots = now.robots;
       const meant = meantBy(sent, now?.robots ?? []),
-        since = Date.parse(now?.time ?? "") - passed + NEW; // by the console's clock
-      if (rests(meant) && meant.every((one) => Date.parse(one.heard ?? "") >= since)) this.show("after_all");
-      else setTimeout(() => this.heed(), AGAIN);
+        since = Date.parse(now?.time ?? "") - passed + NEW, // by the console's clock
+        alarmed = sent === this.sent && !this.said.hidden && ALARMS.includes(this.told?.[0] ?? "");
+      if (alarmed && rests(meant) && meant.every((one) => Date.parse(one.heard ?? "") >= since)) this.show("after_all");
+      else setTimeout(() => this.heed(), AGAIN); // of a press that came meanwhile, too
     }
 
     hint() {
