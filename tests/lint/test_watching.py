@@ -67,3 +67,26 @@ def test_a_saved_file_is_answered(project: Path, watching: Guarded[str]) -> None
     watching.send_signal(signal.SIGINT)
     out, error = watching.communicate(timeout=HANG)
     assert (out, error, watching.returncode) == ("", "", 0)
+
+
+UNNOTICED = """
+import signal, sys, threading
+from lumen.cli.main import main
+
+def interrupt():
+    sys.stdin.readline()
+    signal.raise_signal(signal.SIGINT)  # on another thread: it does not end the wait of the main thread
+
+threading.Thread(target=interrupt, daemon=True).start()
+sys.exit(main(sys.argv[1:]))
+"""
+
+
+@pytest.mark.slow
+def test_ctrl_c_just_before_a_wait_is_noticed(project: Path) -> None:
+    command = [sys.executable, "-c", UNNOTICED, "lint", "--watch", str(project)]
+    environment = {**os.environ, "PYTHONPATH": str(ENGINE)}
+    with Guarded(command, stdin=PIPE, stdout=PIPE, stderr=PIPE, text=True, env=environment) as process:
+        assert "nothing wrong; " in answer(process)
+        assert process.communicate("now\n", timeout=HANG) == ("", "")
+        assert process.returncode == 0

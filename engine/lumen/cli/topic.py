@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 from lumen.bus.bodies import encode
 from lumen.bus.brokers import probe_of
 from lumen.bus.validated import by_key, validated
-from lumen.cli.progress import progress
+from lumen.cli.progress import LOOK, progress
 from lumen.cli.reach import reach
 from lumen.cli.tables import table
 from lumen.errors import BusClosedError, BusRefusedError, UsageError
@@ -38,7 +38,6 @@ TOPIC_VERBS = {
 """The verbs and their help. A PATTERN is a key (`*` matches one word, `#` any number of them) or a route's name."""
 LISTENING = 3.0
 SHOWN = 200
-LOOK = 0.5
 BUILT_IN = "comes with Lumen"
 """The origin of a route that no row of lumen.yaml declares."""
 

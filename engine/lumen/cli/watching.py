@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 
 from lumen.cli.printing import show, verdict
+from lumen.cli.progress import LOOK
 from lumen.cli.render import render
 from lumen.cli.terminal import coloured, paint
 from lumen.run.linting.findings import Findings
@@ -20,12 +21,10 @@ QUIET = 0.01
 _CLEAR = "\x1b[2J\x1b[H"
 
 
-def watch(
-    projects: Sequence[LintTarget], judge: FindingsOf, format: str, ended: Callable[[], bool] = lambda: False
-) -> int:
-    """Print the findings, and print them again after every change, until `ended` returns True or Ctrl-C is pressed.
+def watch(projects: Sequence[LintTarget], judge: FindingsOf, format: str) -> int:
+    """Print the findings, and print them again after every change, until Ctrl-C is pressed; return 0.
 
-    Return 0. `ended` is called only after each printing. Ctrl-C before the first printing raises KeyboardInterrupt.
+    Ctrl-C before the first printing raises KeyboardInterrupt.
     """
     changes: queue.SimpleQueue[tuple[int, SavedFiles]] = queue.SimpleQueue()
     found = [judge(what) for what in projects]
@@ -38,8 +37,11 @@ def watch(
             _draw(found, format)
             gc_scheduler = GcScheduler()
             stack.callback(gc_scheduler.close)
-            while not ended():
-                latest = dict([changes.get()])
+            while True:
+                try:
+                    latest = dict([changes.get(timeout=LOOK)])
+                except queue.Empty:
+                    continue
                 while not changes.empty():
                     latest.update([changes.get()])
                 with gc_paused():
