@@ -94,7 +94,7 @@ class SupervisedProcess:
     def restart(self) -> None:
         """Kill the program; it is started again after a pause."""
         if self._process:
-            _kill(self._process)
+            _signal(self._process, signal.SIGKILL)
 
     def close(self) -> None:
         """End the program and everything that it started, for good; repeated calls do nothing.
@@ -168,7 +168,7 @@ class SupervisedProcess:
 
         A program that it started in another group may keep the output open; the reader then reads on and closes it.
         """
-        _kill(process)
+        _signal(process, signal.SIGKILL)
         process.wait()
         if self._reader:
             self._reader.join(END_TIMEOUT)
@@ -186,11 +186,7 @@ def _ending(code: int) -> str:
     return f"was ended by signal {-code}"
 
 
-def _kill(process: "subprocess.Popen[bytes]") -> None:
-    """Kill the process and its group, even if the first process of the group has ended."""
-    _signal(process, signal.SIGKILL)
-
-
 def _signal(process: "subprocess.Popen[bytes]", number: signal.Signals) -> None:
+    """Send a signal to the process and its group, even if the first process of the group has just ended."""
     with suppress(OSError):
         os.killpg(process.pid, number) if hasattr(os, "killpg") else process.kill()

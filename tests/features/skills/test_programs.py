@@ -176,11 +176,23 @@ def test_a_second_answer_is_printed_and_ignored(acting: Stage) -> None:
     ]
     made = SkillProcess("twice", command, str(acting.root), 100, acting.told.append)
     made.begin("twice", {}, lambda: None)
-    assert made.await_end(300.0)
+    assert made.await_end(HANG)
     until(lambda: acting.told)
     assert acting.told == ['an answer came after the end of its call, and is ignored: {"result": {}}']
     assert made.take() == [{"result": {}}]
     made.close()
+
+
+def test_a_group_is_killed_once_since_its_number_may_be_another_programs_later(
+    acting: Stage, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    made = SkillProcess("short", ["sh", "-c", "exit 1"], str(acting.root), 100, acting.told.append)
+    assert made.await_end(HANG)
+    made.kill()  # here at the latest, if not by the thread that noticed the end
+    killed = list[int]()
+    monkeypatch.setattr(os, "killpg", lambda group, number: killed.append(group))
+    made.close()
+    assert killed == []
 
 
 def test_the_end_of_a_program_is_noticed_if_its_child_keeps_the_output_open(acting: Stage) -> None:

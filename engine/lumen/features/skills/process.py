@@ -76,7 +76,7 @@ class SkillProcess:
             reason = getattr(error, "strerror", None) or str(error)
             message = f"the program of `{skill}` can't be started: {command[0]}: {reason.lower()}"
             raise RobotFailedError(message) from None
-        self._input = self._stream(self._popen.stdin).fileno()
+        self._input, self._groups = self._stream(self._popen.stdin).fileno(), [self._popen.pid]
         os.set_blocking(self._input, False)
         with suppress(OSError, ValueError):
             most = int(self._memory * HEADROOM)
@@ -166,8 +166,8 @@ class SkillProcess:
         with self._changed:
             self.ended = self.ended or reason or "it was ended"
         with self._killing:
-            with suppress(OSError):
-                os.killpg(self._popen.pid, signal.SIGKILL)
+            with suppress(OSError, IndexError):  # only once: the number may be another program's later
+                os.killpg(self._groups.pop(), signal.SIGKILL)
             for pid in _marked(self._mark):
                 with suppress(OSError):
                     os.kill(pid, signal.SIGKILL)
