@@ -6,8 +6,10 @@
 #
 # A line of the file is a package, a program or library that serves in its place where that is there (or `-`), and words.
 #
-# For tests: AS_USER=1 does what is done without root, STATUS is another list of what is installed.
+# For tests: AS_USER=1 does what is done without root, STATUS is another list of what is installed, PAUSE is the time
+# between two attempts to get apt's lock [s].
 set -eu
+export LC_ALL=C  # the words of apt-get are compared
 status=${STATUS:-/var/lib/dpkg/status}
 here=$(cd "$(dirname "$0")/.." && pwd)
 unpacked=${UNPACKED:-$here/.cache/debian}
@@ -55,6 +57,16 @@ complaint() {  # the line of the log that says what went wrong
         END { line = network ? network : error ? error : last; sub(/^[EW]: /, "", line); print substr(line, 1, 120) }' "$log"
 }
 
+logged() {  # run a command into the log; if another program has apt's lock, try again for 10 minutes
+    attempts=120
+    until "$@" >"$log" 2>&1; do
+        if ! grep -q "Could not get lock" "$log" || [ $attempts = 1 ]; then return 1; fi
+        [ $attempts -lt 120 ] || echo "waiting until apt's lock is free: $(complaint) …"
+        attempts=$((attempts - 1))
+        sleep "${PAUSE:-5}"
+    done
+}
+
 missing=$(absent)
 [ -n "$missing" ] || exit 0
 if ! command -v apt-get >/dev/null || ! command -v dpkg >/dev/null; then
@@ -71,7 +83,7 @@ if [ "$(id -u)" != 0 ] || [ -n "${AS_USER:-}" ]; then
         -o Debug::NoLocking=1 -o APT::Sandbox::User="
 fi
 echo "asking apt-get for$(for package in $missing; do printf ' %s' "$package"; done) …"
-$apt update >"$log" 2>&1 || true
+logged $apt update || true
 finds() { $apt -s --no-install-recommends install "$@" >>"$log" 2>&1; }
 possible=$missing impossible=
 if ! finds $missing; then
@@ -104,10 +116,10 @@ unpack() {
 }
 
 if $as_root; then
-    install >"$log" 2>&1 || lack "$possible" "apt-get could not install it: $(complaint)"
+    logged install || lack "$possible" "apt-get could not install it: $(complaint)"
     exit 0
 fi
-if ! unpack >"$log" 2>&1; then
+if ! logged unpack; then
     lack "$possible" "apt-get could not fetch it: $(complaint)"
     exit 0
 fi

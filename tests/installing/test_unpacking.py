@@ -11,6 +11,7 @@ from tests.guarded import run_guarded
 from tests.waiting import HANG
 
 SCRIPT = ROOT / "scripts/packages.sh"
+USUAL = "sh cat awk rm mkdir dirname tee id sed grep touch tail env sleep"
 STATUS = """Package: openssl
 Status: install ok installed
 Version: 3
@@ -47,7 +48,7 @@ class Machine:
     def __init__(self, folder: Path, **script: str) -> None:
         self.unpacked, self.programs = folder / "cache/debian", folder / "bin"
         self.programs.mkdir()
-        for name in ("sh", "cat", "awk", "rm", "mkdir", "dirname", "tee", "id", "sed", "grep", "touch", "tail", "env"):
+        for name in USUAL.split():
             (self.programs / name).symlink_to(shutil.which(name) or name)
         for name, text in script.items():
             program = self.programs / name.replace("_", "-")
@@ -139,6 +140,32 @@ def test_what_apt_complains_of_is_the_reason(tmp_path: Path, failing: str, said:
     machine.provide("rabbitmq-server")
     missing = machine.unpacked.with_suffix(".missing").read_text()
     assert missing == f"rabbitmq-server is not on this machine: {said}\n"
+
+
+LOCK = "E: Could not get lock /var/lib/apt/lists/lock. It is held by process 7 (apt-get)"
+HELD = """case "$*" in *" VERB"*)
+    echo try >> "$UNPACKED.tries"
+    if [ "$(grep -c try "$UNPACKED.tries")" -lt 4 ]; then echo 'LOCK' >&2; exit 100; fi
+esac
+"""
+
+
+@pytest.mark.parametrize("verb", ["update", "download"])
+def test_a_lock_that_another_program_has_is_waited_for(tmp_path: Path, verb: str) -> None:
+    held = HELD.replace("VERB", verb).replace("LOCK", LOCK)
+    machine = Machine(tmp_path, apt_get=APT.replace("\n", f"\n{held}", 1), dpkg=DPKG)
+    machine.more["PAUSE"] = "0"
+    said = machine.provide("rabbitmq-server - a broker").splitlines()
+    assert said.count(f"waiting until apt's lock is free: {LOCK[3:]} …") == 1
+    assert (machine.unpacked / "rabbitmq-server").exists()
+    assert Path(f"{machine.unpacked}.tries").read_text() == "try\n" * 4
+
+
+def test_a_lock_that_is_never_free_is_the_reason(tmp_path: Path) -> None:
+    machine = Machine(tmp_path, apt_get=f"#!/bin/sh\necho '{LOCK}' >&2\nexit 100\n", dpkg=DPKG)
+    machine.more["PAUSE"] = "0"
+    machine.provide("rabbitmq-server")
+    assert LOCK[3:] in machine.unpacked.with_suffix(".missing").read_text()
 
 
 def test_a_broker_that_is_given_is_used_for_what_needs_no_more() -> None:
