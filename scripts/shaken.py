@@ -28,6 +28,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
+import pytest
+
 ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT))
 
@@ -239,8 +241,14 @@ def shaken(plan: Plan, arguments: argparse.Namespace) -> Run:
         left = group.close()
     passed, failed = read(outcomes)
     if code not in (0, 1) or (code == 1 and not failed):
-        failed |= {f"the run itself (exit code {code})"}
+        failed |= {f"the run itself ({meaning(code)})"}
     return Run(plan.condition, plan.seed, passed, frozenset(failed), wall, cpu, left, log)
+
+
+def meaning(code: int) -> str:
+    """Return the meaning of an exit code of pytest, such as `no tests collected`."""
+    codes = {each.value: each.name.lower().replace("_", " ") for each in pytest.ExitCode}
+    return codes.get(code, f"exit code {code}")
 
 
 def log_of(plan: Plan) -> Path:

@@ -78,6 +78,11 @@ def test_what_failed_is_listed_with_how_often_and_the_seeds(tmp_path: Path) -> N
     assert shaken.summary(runs[:1]) == ["no test failed in 1 runs"]
 
 
+def test_a_run_without_a_failed_test_that_fails_says_why() -> None:
+    assert shaken.meaning(5) == "no tests collected"
+    assert shaken.meaning(-9) == "exit code -9"
+
+
 def test_outcomes_are_read_whole_and_cut(tmp_path: Path) -> None:
     file = tmp_path / "outcomes"
     writer = shuffled.Outcomes(file)
