@@ -57,10 +57,6 @@ def _prepared(phrases: Mapping[str, tuple[str, ...]]) -> tuple[str, ...]:
     return tuple({f" {' '.join(form.literals)} ": None for form in found})
 
 
-def _are_slotted(phrases: Mapping[str, tuple[str, ...]]) -> bool:
-    return any("{" in text for texts in phrases.values() for text in texts)
-
-
 def is_heard(text: str, phrases: Mapping[str, tuple[str, ...]], lists: Lists = _NO_LISTS) -> bool:
     """Return True if any phrase, in any language, is in the text as whole words, even in a negation.
 
@@ -71,7 +67,9 @@ def is_heard(text: str, phrases: Mapping[str, tuple[str, ...]], lists: Lists = _
     except KeyError:
         table = None
     if table is not phrases:
-        prepared, slotted = _phrases.put(phrases, (_prepared(phrases), _are_slotted(phrases)))
+        prepared, slotted = _phrases.put(
+            phrases, (_prepared(phrases), any("{" in text for texts in phrases.values() for text in texts))
+        )
     last, said = _last[0]
     if last is not text:
         said = padded(text[:MAX_TEXT_EXAMINED])

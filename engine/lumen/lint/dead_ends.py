@@ -256,7 +256,9 @@ class _Ways:
     def waiting(self, state: State) -> None:
         """Report a state that is left only if a visitor acts."""
         steps = nested((*state.entry, *state.do))
-        raised = {a.event for step in steps if isinstance(a := step.action, Raise | Send) and not _goes_away(a)}
+        raised = {  # here: an event that is sent to another behaviour is not
+            a.event for step in steps if isinstance(a := step.action, Raise) or (isinstance(a, Send) and not a.to)
+        }
         names: set[str] = set()
         for transition in self.ways_out(state.path):
             if self.in_course(transition) and not self.late(state, transition):
@@ -283,8 +285,3 @@ class _Ways:
         """Return whether a transition is the `at` of an outer state: an inner state may have to wait hours for it."""
         within_others = state.parent is not None and state.path not in self.machine.states[state.parent].initial
         return transition.schedule is not None and transition.source != state.path and within_others
-
-
-def _goes_away(action: Raise | Send) -> bool:
-    """Return whether an event is sent to another behaviour."""
-    return isinstance(action, Send) and bool(action.to)

@@ -58,7 +58,7 @@ def _told(report: DocumentReport, where: NodePath) -> bool:
 
 def _constant(guard: Expression, report: DocumentReport) -> None:
     if _never(guard.source):
-        simple = _simple(tree(guard.source))
+        simple = not isinstance(tree(guard.source), Logic)
         message = (
             "this condition is never true"
             if simple
@@ -82,10 +82,6 @@ def _always(source: str) -> bool:
 @lru_cache(maxsize=MAX_REMEMBERED_TREES)
 def _implies(source: str, other: str) -> bool:
     return implies(tree(source), tree(other))
-
-
-def _simple(node: ExpressionNode) -> bool:
-    return not isinstance(node, Logic)
 
 
 def _late(machine: MachineDefinition, state: State, report: DocumentReport) -> None:

@@ -64,7 +64,9 @@ def complaints(error: Error, root: Any = None) -> Iterator[Complaint]:
         yield _missing(error, path, error.schema if path else root)
     elif keyword == "dependentRequired":
         yield from _dependents(error, path)
-    elif error.schema == {"minProperties": 1, "maxProperties": 1} or (keyword == "maxProperties" and _is_one(error)):
+    elif error.schema == {"minProperties": 1, "maxProperties": 1} or (
+        keyword == "maxProperties" and error.validator_value == 1
+    ):
         yield _verbs(error, path)
     else:
         yield _wrong(error, path)
@@ -193,10 +195,6 @@ def _bad_key(error: Error, path: NodePath) -> Complaint:
     if code := _LANGUAGES.get(error.instance.lower(), ""):
         hint = f"write the language as a code: `{code}`"
     return Complaint(WRONG_KEY, here, f"`{error.instance}` is not a valid key in {node(path)}", hint, path, here, True)
-
-
-def _is_one(error: Error) -> bool:
-    return bool(error.validator_value == 1)
 
 
 def _verbs(error: Error, path: NodePath) -> Complaint:

@@ -133,7 +133,7 @@ def _pattern(path: NodePath, text: str, report: DocumentReport) -> None:
 def _target(data: Any, reference: str) -> Any:
     """Return the schema that a JSON pointer or an anchor of this file refers to; None if it is absent."""
     if reference != "#" and not reference.startswith("#/"):
-        named = (item for item in _maps(data) if item.get("$anchor") == reference[1:])
+        named = (each for each in values_in(data) if isinstance(each, dict) and each.get("$anchor") == reference[1:])
         return next(named, None)
     for step in reference[2:].split("/") if len(reference) > 1 else ():
         key = step.replace("~1", "/").replace("~0", "~")
@@ -144,10 +144,6 @@ def _target(data: Any, reference: str) -> Any:
         else:
             return None
     return data if isinstance(data, dict | bool) else None
-
-
-def _maps(data: Any) -> Iterator[dict[str, Any]]:
-    return (item for item in values_in(data) if isinstance(item, dict))
 
 
 def _circles(data: Any, reference: str) -> bool:

@@ -15,11 +15,9 @@ def recorded(active: AbstractSet[StateNode], left: AbstractSet[StateNode]) -> di
     for parent in left:
         for history in parent.histories:
             assert history.state is not None  # only the document has no state
-            deep = history.state.deep
-            kept = [n for n in active if (_is_leaf(n) and n.lies_below(parent) if deep else n.parent is parent)]
+            if history.state.deep:
+                kept = [n for n in active if n.kind in (StateKind.ATOMIC, StateKind.FINAL) and n.lies_below(parent)]
+            else:
+                kept = [n for n in active if n.parent is parent]
             found[history.path] = tuple(n.path for n in sorted(kept, key=lambda n: n.index))
     return found
-
-
-def _is_leaf(node: StateNode) -> bool:
-    return node.kind in (StateKind.ATOMIC, StateKind.FINAL)

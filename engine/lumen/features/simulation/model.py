@@ -69,7 +69,12 @@ def add_servos(robot: mjcf.RootElement, body: Body) -> None:
             driving.setdefault(motor.joint.name, []).append(motor)
     for name, joint in body.joints.items():
         element, motors = robot.find("joint", name), driving.get(name, [])
-        if element is None or name in body.shared or joint.effort == inf or any(_serves(m, name) for m in motors):
+        if (
+            element is None
+            or name in body.shared
+            or joint.effort == inf
+            or any(m.tag == "position" and m.name == name for m in motors)
+        ):
             continue
         for motor in motors:
             motor.remove()
@@ -82,10 +87,6 @@ def add_servos(robot: mjcf.RootElement, body: Body) -> None:
             ctrlrange=(joint.minimum, joint.maximum),
             forcerange=(-joint.effort, joint.effort),
         )
-
-
-def _serves(motor: mjcf.Element, name: str) -> bool:
-    return bool(motor.tag == "position" and motor.name == name)
 
 
 def load(
