@@ -195,6 +195,15 @@ def test_a_group_is_killed_once_since_its_number_may_be_another_programs_later(
     assert killed == []
 
 
+def test_a_call_of_a_program_that_has_just_ended_ends(acting: Stage) -> None:
+    made = SkillProcess("short", ["sh", "-c", "exit 1"], str(acting.root), 100, acting.told.append)
+    until(made.has_news)
+    made.begin("short", {}, lambda: None)
+    assert made.has_news()
+    assert made.take() == [{"ended": "it ended with exit code 1"}]
+    made.close()
+
+
 def test_the_end_of_a_program_is_noticed_if_its_child_keeps_the_output_open(acting: Stage) -> None:
     command = ["sh", "-c", f"setsid sleep 1000 & {APART}; echo $! > child; exit 1"]
     made = SkillProcess("gone", command, str(acting.root), 100, acting.told.append)

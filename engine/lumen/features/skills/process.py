@@ -100,7 +100,7 @@ class SkillProcess:
         """
         with self._changed:
             self._call += 1
-            self._messages.clear()
+            self._messages = deque(each for each in self._messages if "ended" in each)
             self._output, self._wake, self._over = 0, wake, False
         self.send({"call": self._call, "skill": skill, "arguments": dict(arguments)})
 
