@@ -12,7 +12,7 @@ from lumen.bus import Message, connect
 from lumen.language.commands import Rest
 from lumen.run.setup import set_up
 from lumen.upkeep import threads
-from lumen.upkeep.drops import MAX_KEYS, OTHERS, TELL_PERIOD, DropLog, ReasonLog
+from lumen.upkeep.drops import MAX_KEYS, OTHERS, TELL_PERIOD, DropLog, Drops, ReasonLog
 from lumen.upkeep.threads import MAX_FAULTS, MessageGuard, ThreadWatch, WatchedThread
 from tests.exhibits import project
 from tests.nodes import Printed, whole
@@ -221,6 +221,18 @@ def test_what_gives_way_in_a_full_queue_is_counted_by_its_key() -> None:
         drops.push(waiting, (key, n), lambda old: old[0], "full")
     assert list(waiting) == [("b", 2), ("c", 3)]
     assert drops.counts == {"a": 2}
+
+
+def test_what_another_thread_takes_out_of_a_full_queue_meanwhile_is_not_counted() -> None:
+    waiting, taken = deque(["a"], maxlen=1), list[str]()
+
+    def take(line: str) -> None:
+        taken.extend(waiting)
+        waiting.clear()
+
+    drops = Drops(take)
+    drops.push(waiting, "b", str, "full")
+    assert sorted([*taken, *waiting, *drops.counts]) == ["a", "b"]
 
 
 def test_a_reason_is_told_once_in_ten_seconds_whatever_its_numbers(caplog: pytest.LogCaptureFixture) -> None:

@@ -60,7 +60,7 @@ class Drops:
         """Append an item to a bounded queue; if it is full, drop the oldest item and count it under its key."""
         if len(waiting) == waiting.maxlen:
             with suppress(IndexError):  # another thread has just removed it
-                self.add(key_of(waiting[0]), why)
+                self.add(key_of(waiting.popleft()), why)
         waiting.append(item)
 
     def tell(self, *, all: bool = False) -> None:
