@@ -30,9 +30,9 @@ from lumen.run.services import Services
 from lumen.upkeep.supervised_process import FIRST_PAUSE, MAX_LINES, SupervisedProcess
 from tests import ROOT
 from tests.copying import copied_project
-from tests.guarded import PIPE, STDOUT, Guarded
+from tests.guarded import PIPE, STDOUT, Guarded, run_guarded
 from tests.rabbitmq import RabbitMQ
-from tests.waiting import APART, Collector, until
+from tests.waiting import APART, HANG, Collector, until
 
 pytestmark = pytest.mark.process
 
@@ -311,6 +311,33 @@ def test_a_program_shows_that_it_lives_once_per_period(
         assert module.wait(0.0)
     assert [body["state"] for body in seen.bodies] == ["here", "here", "leaves"]
     assert {tuple(body["parts"]) for body in seen.bodies} == {("mood",)}
+
+
+TERMINATED_IN_A_WAIT = """
+import signal, sys, threading, time
+from lumen.bus.memory import MemoryBus
+from lumen.run.joining import JoinedModule
+
+def end(main):
+    while sys._current_frames()[main].f_code.co_name != "wait":
+        time.sleep(0.01)
+    signal.pthread_kill(main, signal.SIGTERM)
+
+def wait(*arguments):  # of an Event, which has its lock here
+    signal.raise_signal(signal.SIGTERM)
+    return inside(*arguments)
+
+threading.Thread(target=end, args=[threading.get_ident()]).start()
+with JoinedModule("mood", "NAO", MemoryBus("terminated"), None) as module:
+    inside, threading.Condition.wait = threading.Condition.wait, wait
+    print(module.wait(1000.0), module.wait(1000.0), flush=True)
+    threading.Condition.wait = inside
+"""
+
+
+def test_sigterm_ends_a_program_at_any_moment_of_its_wait() -> None:
+    done = run_guarded([sys.executable, "-c", TERMINATED_IN_A_WAIT], capture_output=True, text=True, timeout=HANG)
+    assert (done.stdout, done.stderr, done.returncode) == ("False False\n", "", 0)
 
 
 # The exhibition

@@ -2,6 +2,7 @@
 
 import os
 import platform
+import queue
 import signal
 import threading
 import time
@@ -39,7 +40,7 @@ class JoinedModule:
         settings = main_settings(project, robot) if project else None
         self._routes = settings.routes if settings else {}
         self._session, self._next = uuid.uuid4().hex[:12], 0.0
-        self._ending = threading.Event()
+        self._ending: queue.SimpleQueue[None] = queue.SimpleQueue()  # unlike an Event, safe in a signal handler
         if threading.current_thread() is threading.main_thread():
             signal.signal(signal.SIGTERM, self._end)
 
@@ -68,7 +69,7 @@ class JoinedModule:
         Return False as soon as the exhibition ends this program, or the bus is gone.
         """
         until = time.monotonic() + seconds
-        while not self._ending.is_set():
+        while self._ending.empty():
             try:
                 self.alive()
             except BusError:
@@ -76,12 +77,13 @@ class JoinedModule:
             left = until - time.monotonic()
             if left <= 0:
                 return True
-            self._ending.wait(min(left, PRESENCE_PERIOD))
+            with suppress(queue.Empty):
+                self._ending.put(self._ending.get(timeout=min(left, PRESENCE_PERIOD)))
         return False
 
     def close(self) -> None:
         """Announce that the program leaves, and disconnect; calling it again does no harm."""
-        self._ending.set()
+        self._ending.put(None)
         with suppress(BusError):
             self._say(LEAVES)
         self.bus.close()
@@ -93,7 +95,7 @@ class JoinedModule:
         self.close()
 
     def _end(self, number: int, frame: FrameType | None) -> None:
-        self._ending.set()
+        self._ending.put(None)
 
     def _say(self, state: str) -> None:
         body = {

@@ -1,9 +1,10 @@
 """A running centre: its folder, its bus, and a tick each second."""
 
-import threading
+import queue
 import time
 import uuid
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 
 from lumen.bus.brokers import Stream, has_streams, stream_of
@@ -63,7 +64,7 @@ class ServedCentre:
         kept = BundleFolder(self._home.folder)
         self.centre = Centre(fleet, state, journal, kept, signer, bus, log, self._stream, tell=tell)
         self._desk = CentreDesk(self.centre, bus)
-        self._ending = threading.Event()
+        self._ending: queue.SimpleQueue[None] = queue.SimpleQueue()  # unlike an Event, safe in a signal handler
 
     def tick(self) -> None:
         """Answer the received requests, then advance the centre."""
@@ -72,13 +73,14 @@ class ServedCentre:
 
     def run(self) -> None:
         """Tick until `end` is called."""
-        while not self._ending.is_set():
+        while self._ending.empty():
             self.tick()
-            self._ending.wait(LOOK_PERIOD)
+            with suppress(queue.Empty):
+                self._ending.put(self._ending.get(timeout=LOOK_PERIOD))
 
     def end(self) -> None:
         """Make `run` return; safe in a signal handler."""
-        self._ending.set()
+        self._ending.put(None)
 
     def _opened(self, url: str, first: int, tell: Callable[[str], None]) -> Stream | None:
         if not has_streams(url):
