@@ -319,7 +319,7 @@ from lumen.bus.memory import MemoryBus
 from lumen.run.joining import JoinedModule
 
 def end(main):
-    while sys._current_frames()[main].f_code.co_name != "wait":
+    while sys._current_frames()[main].f_code is not JoinedModule.wait.__code__:
         time.sleep(0.01)
     signal.pthread_kill(main, signal.SIGTERM)
 
@@ -327,8 +327,9 @@ def wait(*arguments):  # of an Event, which has its lock here
     signal.raise_signal(signal.SIGTERM)
     return inside(*arguments)
 
-threading.Thread(target=end, args=[threading.get_ident()]).start()
+ending = threading.Thread(target=end, args=[threading.get_ident()])
 with JoinedModule("mood", "NAO", MemoryBus("terminated"), None) as module:
+    ending.start()
     inside, threading.Condition.wait = threading.Condition.wait, wait
     print(module.wait(1000.0), module.wait(1000.0), flush=True)
     threading.Condition.wait = inside
