@@ -102,8 +102,9 @@ class Viewer:
         self.until(clicked)
 
     def lands(self, element: WebElement, selector: str) -> bool:
-        """Click a match; return False if the page moved it meanwhile, so that the click went elsewhere."""
+        """Click a match, out of the page's head; return False if the page moved it, so that the click went elsewhere."""
         self.run(LANDING, selector)
+        self.run("arguments[0].scrollIntoView({ block: 'nearest' })", element)
         element.click()
         return self.run("return window.landed") is not False  # undefined on the page to which the click led
 
