@@ -16,7 +16,9 @@ from lumen.bus.local import LocalAddress, LocalBusClient, LocalBusServer
 from lumen.bus.local.frames import frame, framed
 from lumen.bus.local.server import ClientConnection
 from lumen.bus.memory import MemoryBus
+from lumen.errors import BusClosedError
 from lumen.language.causes import MessageOrigin
+from lumen.run.asking import send_request
 from tests.waiting import HANG, Collector, finished, until
 
 
@@ -155,6 +157,19 @@ def test_a_fault_of_ours_in_handling_a_frame_costs_one_connection(
         assert other.bus.gone.wait(HANG)
         monkeypatch.undo()
         client.still_hears()
+
+
+def test_a_question_ends_with_the_exhibition(opened: Opened) -> None:
+    def answer(message: Message) -> None:
+        opened.bus.publish(message.reply_to, "begun", correlation_id=message.correlation_id)
+
+    opened.bus.subscribe("lumen.question", answer)
+    with Client(opened) as client:
+        answers = send_request(client.bus, "lumen.question", {}, "lumen.answers")
+        assert next(answers) == "begun"
+        opened.server.close()
+        with pytest.raises(BusClosedError, match="the exhibition has ended"):
+            next(answers)
 
 
 def test_whoever_closes_waits_for_no_thread_that_has_nothing_to_do(opened: Opened) -> None:

@@ -14,8 +14,6 @@ PATIENCE = 2.0
 """The time [s] before the bar appears."""
 REDRAWING = 0.25
 """The time between two drawings of the line [s], short enough that it visibly changes."""
-LOOK = 0.5
-"""The longest wait [s] in a command that Ctrl-C ends: if it is pressed just before a wait, Python is told after it."""
 WIDTH = 24
 
 

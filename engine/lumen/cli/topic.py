@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 from lumen.bus.bodies import encode
 from lumen.bus.brokers import probe_of
 from lumen.bus.validated import by_key, validated
-from lumen.cli.progress import LOOK, progress
+from lumen.cli.progress import progress
 from lumen.cli.reach import reach
 from lumen.cli.tables import table
 from lumen.errors import BusClosedError, BusRefusedError, UsageError
@@ -26,7 +26,7 @@ from lumen.project.files import read_files
 from lumen.project.project_folders import MAIN_FILE
 from lumen.project.running_project import running_project
 from lumen.project.units import seconds
-from lumen.run.asking import OPERATOR_ANSWERS
+from lumen.run.asking import LOOK, OPERATOR_ANSWERS
 
 TOPIC_VERBS = {
     "list": "list the routes, and count the messages on them",

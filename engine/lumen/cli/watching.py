@@ -7,9 +7,9 @@ from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 
 from lumen.cli.printing import show, verdict
-from lumen.cli.progress import LOOK
 from lumen.cli.render import render
 from lumen.cli.terminal import coloured, paint
+from lumen.run.asking import LOOK
 from lumen.run.linting.findings import Findings
 from lumen.run.linting.targets import FindingsOf, LintTarget
 from lumen.run.watcher import FileWatcher, SavedFiles

@@ -102,7 +102,7 @@ class Viewer:
         self.until(clicked)
 
     def lands(self, element: WebElement, selector: str) -> bool:
-        """Click a match, out of the page's head; return False if the page moved it, so that the click went elsewhere."""
+        """Scroll to a match and click it; return False if the page moved it, so that the click went elsewhere."""
         self.run(LANDING, selector)
         self.run("arguments[0].scrollIntoView({ block: 'nearest' })", element)
         element.click()

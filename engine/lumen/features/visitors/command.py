@@ -10,7 +10,7 @@ from pathlib import Path
 from lumen.bus.addresses import within_process
 from lumen.cli.projects import shown_project
 from lumen.cli.reach import configure_robot_name
-from lumen.errors import BusUnreachableError, UsageError
+from lumen.errors import BusClosedError, BusUnreachableError, UsageError
 from lumen.features.visitors.memory import DATABASE_FILE
 from lumen.features.visitors.module import Store
 from lumen.language.counts import counted
@@ -148,7 +148,7 @@ def _tell_running(
 def _ask_packages(bus: Bus, key: str, name: str, found: Forgetting, packages: dict[str, str]) -> None:
     """Wait until the running exhibition has called the packages; move them from `packages` to the result."""
     timeout = ANSWER_TIMEOUT + FORGETTING_SPACING
-    with suppress(BusUnreachableError):
+    with suppress(BusUnreachableError, BusClosedError):
         answer = next(send_request(bus, key, {"name": name}, OPERATOR_ANSWERS, first=timeout))
         for package in sorted(packages.keys() & answer["packages"].keys()):
             fault = answer["packages"][package]
