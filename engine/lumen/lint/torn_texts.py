@@ -94,12 +94,8 @@ def _parts(texts: list[str], lines: list[int]) -> Iterator[tuple[int, int]]:
     """
     first = 0
     for i in range(1, len(texts) + 1):
-        if i < len(texts) and lines[i - 1] == lines[i] and _continues(texts[i - 1], texts[i]):
+        if i < len(texts) and lines[i - 1] == lines[i] and texts[i][:1].islower() and not texts[i - 1].endswith(_ENDED):
             continue
         if i - first > 1 and texts[first][:1].isupper():
             yield first, i
         first = i
-
-
-def _continues(one: str, other: str) -> bool:
-    return not one.endswith(_ENDED) and other[:1].islower()

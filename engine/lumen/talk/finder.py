@@ -341,7 +341,7 @@ class Finder:
             if position > start and reading.spans[position] == reading.spans[position - 1]:
                 break  # the rest of a contraction
             particle = word in _PARTICLES and position + 1 < len(words) and position > start
-            if capitals and not (capital or particle or _caseless(said)):
+            if capitals and not (capital or particle or said.upper() == said.lower()):  # a script without capitals
                 break
             if position > start and not particle and not (capitals and capital and word not in speech.name_ends):
                 if self._is_no_name(word, speech, small):
@@ -416,11 +416,6 @@ def _has_capitals(reading: ReadSentence) -> bool:
 
 def _begins_with_capital(reading: ReadSentence, position: int) -> bool:
     return reading.text[reading.spans[position][0]].isupper() and reading.words[position] not in ("i",)
-
-
-def _caseless(said: str) -> bool:
-    """Return whether a word is in a script without capitals."""
-    return said.upper() == said.lower()
 
 
 def _text_end(reading: ReadSentence, end: int) -> int:
