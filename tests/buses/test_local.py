@@ -13,10 +13,11 @@ import pytest
 from lumen.bus import BusError, Message, connect
 from lumen.bus.bodies import encode
 from lumen.bus.local import LocalAddress, LocalBusClient, LocalBusServer
+from lumen.bus.local.client import SendBuffer
 from lumen.bus.local.frames import frame, framed
 from lumen.bus.local.server import ClientConnection
 from lumen.bus.memory import MemoryBus
-from lumen.errors import BusClosedError
+from lumen.errors import BusClosedError, BusUnreachableError
 from lumen.language.causes import MessageOrigin
 from lumen.run.asking import send_request
 from tests.waiting import HANG, Collector, finished, until
@@ -170,6 +171,50 @@ def test_a_question_ends_with_the_exhibition(opened: Opened) -> None:
         opened.server.close()
         with pytest.raises(BusClosedError, match="the exhibition has ended"):
             next(answers)
+
+
+def test_the_last_words_of_an_exhibition_arrive(opened: Opened, monkeypatch: pytest.MonkeyPatch) -> None:
+    with Client(opened) as client:
+        drops, inside, going = opened.server._drops, threading.Event(), threading.Event()
+
+        def tell() -> None:  # at the end of each turn of the server's thread
+            inside.set()
+            assert going.wait(HANG)
+
+        monkeypatch.setattr(drops, "tell", tell)
+        opened.bus.publish("lumen.alive", 1)
+        assert inside.wait(HANG)
+        opened.bus.publish("lumen.alive", "last words")
+        closing = threading.Thread(target=opened.server.close)
+        closing.start()
+        until(lambda: opened.server._ending)
+        going.set()
+        finished(closing)
+        client.seen.wait(2)
+        assert client.seen.bodies == [1, "last words"]
+
+
+@pytest.mark.once  # it opens nothing
+def test_a_buffer_is_empty_only_once_all_is_sent() -> None:
+    buffer = SendBuffer()
+    buffer.put(b"last words")
+    assert buffer.take() == [b"last words"]
+    assert not buffer.emptied(0.0)
+    sender = threading.Thread(target=buffer.take)  # it has sent them
+    sender.start()
+    assert buffer.emptied(HANG)
+    buffer.end()
+    finished(sender)
+
+
+def test_a_subscription_that_is_not_answered_can_be_tried_again(
+    opened: Opened, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with Client(opened) as client:
+        monkeypatch.setattr("lumen.bus.local.client.ANSWER_TIMEOUT", 0.0)
+        monkeypatch.setattr(opened.server, "_subscribe", lambda *_: None)
+        with pytest.raises(BusUnreachableError, match="did not answer the subscription"):
+            client.bus.subscribe("lumen.late", Collector())
 
 
 def test_whoever_closes_waits_for_no_thread_that_has_nothing_to_do(opened: Opened) -> None:

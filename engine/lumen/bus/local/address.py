@@ -17,8 +17,8 @@ MAX_SOCKET_PATH_BYTES = 100
 SOCKET_NAME = "door.sock"
 TEMPORARY_PREFIX = "lumen-door-"
 """Beginning of the name of a folder that is made for a socket whose path would be too long."""
-ANSWER_TIMEOUT = 5.0
-"""Longest wait for the server's answer [s]."""
+ANSWER_TIMEOUT = 30.0
+"""Longest wait for the server's answer [s]: the exhibition may load files meanwhile, on a small, busy machine."""
 
 
 @dataclass(frozen=True)

@@ -42,7 +42,7 @@ class SendBuffer:
     def __init__(self) -> None:
         self._frames: deque[bytes] = deque()
         self._bytes = 0
-        self._ended = False
+        self._ended = self._sending = False
         self._changed = threading.Condition()
 
     def put(self, frame: bytes) -> None:
@@ -57,17 +57,18 @@ class SendBuffer:
     def take(self) -> list[bytes]:
         """Wait for frames, and remove and return all of them; none after the end."""
         with self._changed:
+            self._sending = False
+            self._changed.notify_all()
             self._changed.wait_for(lambda: self._frames or self._ended)
             taken = list(self._frames)
             self._frames.clear()
-            self._bytes = 0
-            self._changed.notify_all()
+            self._bytes, self._sending = 0, True
             return taken
 
     def emptied(self, timeout: float) -> bool:
-        """Wait until everything has been taken; return False if `timeout` [s] passed before."""
+        """Wait until everything has been taken and sent; return False if `timeout` [s] passed before."""
         with self._changed:
-            return self._changed.wait_for(lambda: not self._frames, timeout)
+            return self._changed.wait_for(lambda: self._ended or not (self._frames or self._sending), timeout)
 
     def end(self) -> None:
         """End the waiting of `take`."""
@@ -124,10 +125,11 @@ class LocalBusClient(Bus):
         answered, reason = self._answers[number] = (threading.Event(), [])
         self._handlers[number] = handler
         self._put(frame("subscribe", number, pattern))
-        if not answered.wait(ANSWER_TIMEOUT) or reason != [""]:
+        answered.wait(ANSWER_TIMEOUT)
+        if reason != [""]:
             del self._handlers[number]
-            kind = BusClosedError if self.gone.is_set() else BusRefusedError
-            raise kind(reason[0] if reason else f"the exhibition refuses the subscription to `{pattern}`")
+            kind = BusClosedError if self.gone.is_set() else BusRefusedError if reason else BusUnreachableError
+            raise kind(reason[0] if reason else f"the exhibition did not answer the subscription to `{pattern}`")
 
         def undo() -> None:
             if self._handlers.pop(number, None) and not self._closed:

@@ -42,7 +42,7 @@ MAX_CLIENT_MESSAGES = 20_000
 """The number of messages that may wait for one client; one more drops the oldest."""
 MAX_UNSENT_BYTES = 32 * 1024 * 1024
 """The total size of the frames that may wait for one client [bytes]; more drop the oldest."""
-PROOF_TIMEOUT = 5.0
+PROOF_TIMEOUT = 30.0
 """Longest time for a client to prove that it has the key [s]."""
 FLUSH_MARK = "lumen.door.mark"
 """The key of a message which marks that everything published before it has arrived."""
@@ -130,6 +130,7 @@ class LocalBusServer:
                 self._serve(client)
             self._drops.tell()
         for client in list(self._clients.values()):
+            self._serve(client)  # what was published just before the end
             self._disconnect(client)
         for end in (self._listener, self._wake, self._woken, self._selector):
             end.close()

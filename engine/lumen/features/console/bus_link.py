@@ -5,7 +5,7 @@ import threading
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 
-from lumen.errors import BusError
+from lumen.errors import BusError, BusRefusedError
 from lumen.ports import Bus, EndsWithExhibition, MessageHandler, ReturningBus, UsesBroker
 from lumen.run.asking import OPERATOR_ANSWERS
 from lumen.run.reaching import Reached
@@ -93,7 +93,7 @@ class BusLink:
         bus = reached.bus
         bus.subscribe(OPERATOR_ANSWERS, self._answered)
         for pattern in self._patterns(reached):
-            with suppress(BusError):  # data that the broker does not let us read is not shown
+            with suppress(BusRefusedError):  # data that the broker does not let us read is not shown
                 bus.subscribe(pattern, self._heard)
         if returning := bus.ability(ReturningBus):
             returning.returns(self._returned)
