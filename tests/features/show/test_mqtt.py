@@ -4,10 +4,11 @@ import json
 from collections.abc import Callable, Iterator
 from contextlib import closing
 from typing import Any
+from unittest.mock import Mock
 
 import pytest
 from paho.mqtt.client import Client, MQTTMessage
-from paho.mqtt.enums import CallbackAPIVersion
+from paho.mqtt.enums import CallbackAPIVersion, MQTTErrorCode
 
 from lumen.bus import connect
 from lumen.features.show import health, mqtt, show_control
@@ -16,7 +17,7 @@ from lumen.features.show.settings import MqttLink, TopicMapping
 from lumen.language.projects import Project
 from lumen.upkeep.ratelimit import BURST, RateLimiter
 from tests.features.conftest import Stand
-from tests.features.show.linked import BUTTON, LAMP, Make, added
+from tests.features.show.linked import BUTTON, LAMP, ROUTES, Make, added
 from tests.rabbitmq import RabbitMQ
 from tests.waiting import HANG, Collector, until
 
@@ -210,6 +211,21 @@ def _pressed(button: Device, pressed: Collector) -> bool:
     if not pressed.messages:
         button.send("hall/button", '{"number": 6}')
     return bool(pressed.messages)
+
+
+def test_a_newer_retained_value_is_not_followed_by_an_older_one() -> None:
+    link = MqttLink("localhost", routes={"mood": TopicMapping("museum/mood", retain=True)})
+    broker = mqtt.MqttBroker(link, {"mood": ROUTES["mood"]}, {"mood": None}, [], Mock(), Mock(), Mock())
+    alone = list[bool]()
+
+    def publish(*_: object) -> Mock:
+        alone.append(broker._ordering.locked())
+        return Mock(rc=MQTTErrorCode.MQTT_ERR_SUCCESS)
+
+    broker._client = client = Mock(publish=publish)
+    broker.send("mood", {"name": "calm"})
+    broker._connected(client, None, None, Mock(is_failure=False), None)
+    assert alone == [True, True]
 
 
 @pytest.mark.broker

@@ -3,6 +3,7 @@
 import os
 import secrets
 import ssl
+import threading
 from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -90,7 +91,7 @@ class MqttBroker:
         self._incoming = {link.routes[route].topic: route for route in incoming}
         self._drops, self._health = drops, health
         self._retained: dict[str, bytes] = {}
-        self._closing = False
+        self._closing, self._ordering = False, threading.Lock()
         self._client = self._made(f"{name}-{secrets.token_hex(4)}")
         self._thread = WatchedThread("lumen-show-mqtt", self._run)
 
@@ -110,13 +111,14 @@ class MqttBroker:
         """
         row, mapping = self._routes[route], self._link.routes[route]
         payload = payload_of(body, self._fields[route])
-        if mapping.retain:
-            self._retained[route] = payload
-        if not self._client.is_connected():
+        with self._ordering:
             if mapping.retain:
-                return
-            raise ModuleError("the broker is away")
-        self._publish(mapping.topic, payload, row, retain=mapping.retain)
+                self._retained[route] = payload
+            if not self._client.is_connected():
+                if mapping.retain:
+                    return
+                raise ModuleError("the broker is away")
+            self._publish(mapping.topic, payload, row, retain=mapping.retain)
 
     def tick(self) -> None:
         """Update the connection's health."""
@@ -175,8 +177,9 @@ class MqttBroker:
         self._health.up()
         for topic in self._incoming:
             client.subscribe(topic, 1)
-        for route, payload in [*self._retained.items()]:
-            self._publish(self._link.routes[route].topic, payload, self._routes[route], retain=True)
+        with self._ordering:
+            for route, payload in self._retained.items():
+                self._publish(self._link.routes[route].topic, payload, self._routes[route], retain=True)
 
     def _unreachable(self, client: Client, data: Any) -> None:
         self._health.down("cannot be reached: Lumen keeps trying")
