@@ -2,8 +2,9 @@
 
 import asyncio
 from contextlib import nullcontext, suppress
+from functools import partial
 from random import Random
-from unittest.mock import AsyncMock, Mock
+from unittest.mock import AsyncMock, Mock, patch
 
 import pytest
 from pygls.exceptions import JsonRpcContentModified
@@ -13,6 +14,7 @@ from lumen.features.editor.analysis import Analysis, Judgement
 from lumen.features.editor.completion import complete
 from lumen.features.editor.definitions import definitions, uses
 from lumen.features.editor.hover import hover
+from lumen.features.editor.language_server import LanguageServer
 from lumen.features.editor.locating import NameInText, in_expression
 from lumen.features.editor.names import NameKind
 from lumen.features.editor.renaming import applied, refuse_harm, renamable, rename
@@ -344,6 +346,19 @@ def test_a_renaming_while_files_change_is_asked_for_again(outdated: bool) -> Non
     asked = changes.rename(server, Mock(new_name="how_is_it"))
     with pytest.raises(JsonRpcContentModified) if outdated else nullcontext():
         assert asyncio.run(asked) is server.encoder.return_value.renaming.return_value
+
+
+def test_a_check_that_begins_while_a_request_is_prepared_is_not_made_outdated_by_it() -> None:
+    """The request would end it: the findings of the new text would never be shown."""
+
+    server = LanguageServer()
+    begin = partial(server._checking.__setitem__, ROOT, Mock(done=lambda: False))
+    settled = partial(server.settled, (ROOT / TOUR).as_uri())
+    with (
+        patch.multiple(server, file=lambda _: (Mock(prepare=begin), TOUR), _version=lambda _: 1),
+        pytest.raises(JsonRpcContentModified),
+    ):
+        asyncio.run(settled())
 
 
 def test_an_error_is_harm_although_warnings_are_no_longer_reported() -> None:

@@ -124,7 +124,8 @@ class LanguageServer(pygls_server.LanguageServer):
     async def settled(self, uri: str) -> tuple[Analysis, str] | None:
         """Return the project and file of a document after its project has been checked; None if it belongs to none.
 
-        Raises JsonRpcContentModified if the document changes meanwhile, so that the editor repeats the request.
+        Raises JsonRpcContentModified if the document, or another of its project, changes meanwhile, so that the editor
+        repeats the request.
         """
         root, asked = root_of(Path(path_of(uri))), self._version(uri)
         while (task := self._checking.get(root) if root else None) and not task.done():
@@ -133,6 +134,8 @@ class LanguageServer(pygls_server.LanguageServer):
                 raise JsonRpcContentModified
         if found := self.file(uri):
             await asyncio.get_running_loop().run_in_executor(None, found[0].prepare)
+            if (task := self._checking.get(root) if root else None) and not task.done():
+                raise JsonRpcContentModified
         return found
 
     def _version(self, uri: str) -> int | None:
