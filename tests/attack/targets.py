@@ -133,8 +133,10 @@ class Exhibition:
         said = order("texttospeech", "say", text=text, language="en") | {"replace": True}
         answers = (self.asked(self._address()["command"], said) for _ in range(TRIES))
         wanted(next((a for a in answers if a != "command cancelled"), ""), "command finished", "`say`")
-        if not any(text in str(body) for body in self._spoken.bodies):
-            raise BrokenError(f"`{text}` was not spoken")
+        try:
+            until(lambda: any(text in str(body) for body in self._spoken.bodies), PATIENCE)
+        except AssertionError:
+            raise BrokenError(f"`{text}` was not spoken") from None
         self._spoken.messages.clear()
         if not any(entry.get("command") == f"says “{text}”" for entry in Journal(self._home.folder).entries()):
             raise BrokenError(f"that somebody let it say `{text}` is not in the journal")

@@ -91,7 +91,7 @@ def test_each_of_one_process_has_its_tile_rest_camera_and_why(served: Served, ho
         viewer.click("rest-button[robot=ben] .rest")
         viewer.shows("rests, stopped by", ".tile[aria-label=ben]")
         assert hosted.resting == ["ben"]
-        assert viewer.text(".tile[aria-label=ana] > .badge") == "runs"
+        viewer.until(lambda: viewer.text(".tile[aria-label=ana] > .badge") == "runs")
         viewer.click(".tile[aria-label=ana] h2 a")
         viewer.shows("waiting", ".leaf")
         assert not viewer.all(".stopped")

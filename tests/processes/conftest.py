@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 
+from lumen.robot.remote import robot
 from lumen.run import presence
 from lumen.run.parts import guard
 from tests.processes.troupe import STORIES, Troupe
@@ -37,6 +38,11 @@ def troupe(copy: Path, broker: RabbitMQ) -> Iterator[Troupe]:
 
 @pytest.fixture
 def patient(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Let no part count as lost because a slow machine delivers its signs of life late."""
-    for module, limit in ((presence, "LOST_AFTER"), (guard, "LOST_AFTER"), (guard, "BRAIN_TIMEOUT")):
+    """Let no part count as lost, and no command as unanswered, because a slow machine delivers messages late."""
+    for module, limit in (
+        (presence, "LOST_AFTER"),
+        (guard, "LOST_AFTER"),
+        (guard, "BRAIN_TIMEOUT"),
+        (robot, "COMMAND_ANSWER_TIMEOUT"),
+    ):
         monkeypatch.setattr(module, limit, HANG)

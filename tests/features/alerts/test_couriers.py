@@ -179,6 +179,7 @@ def test_the_end_waits_no_longer_than_it_says_and_is_quiet_at_night(stand: Stand
     joining = threading.Thread(target=courier.join)
     joining.start()
     finished(joining)
+    until(lambda: not courier._thread.is_alive())  # it may be in a last attempt
     stand.hour, tries = TimeOfDay(23), stand.tries
     night = stand.courier(quiet=NIGHT)
     night.put(STOPPED)

@@ -171,11 +171,14 @@ def test_room_is_looked_for_where_there_is_no_folder_yet(tmp_path: Path) -> None
 
 @pytest.fixture
 def quick(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Shorten the periods in which processes find each other, and detect that one is lost."""
+    """Shorten the periods in which processes find each other, and detect that one is lost.
+
+    A pause between two rounds that is longer than PRESENCE_PERIOD is not counted as silence.
+    """
     monkeypatch.setattr(claiming, "CLAIM_DURATION", 0.05)
     monkeypatch.setattr(node, "CLAIM_DURATION", 0.05)
-    monkeypatch.setattr(presence, "PRESENCE_PERIOD", 0.05)
-    monkeypatch.setattr(presence, "LOST_AFTER", 0.4)
+    monkeypatch.setattr(presence, "PRESENCE_PERIOD", 0.5)
+    monkeypatch.setattr(presence, "LOST_AFTER", 1.5)
     monkeypatch.setattr(alerting, "BRAIN_PATIENCE", 0.2)
 
 

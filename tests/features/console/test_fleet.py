@@ -25,7 +25,7 @@ class Watched:
     """A centre with its robots, which tick on a thread, and a console on its bus."""
 
     def __init__(self, folder: Path) -> None:
-        self.hall, self._ending = Hall(folder), threading.Event()
+        self.hall, self._ending, self.alone = Hall(folder), threading.Event(), threading.Lock()
 
         def reach() -> Reached:
             return Reached(MemoryBus(f"fleet-{folder.name}"), "nao1", "command", "stop")
@@ -38,7 +38,8 @@ class Watched:
 
     def _live(self) -> None:
         while not self._ending.wait(0.05):
-            self.hall.look()
+            with self.alone:  # a centre is used on one thread at a time
+                self.hall.look()
 
     def close(self) -> None:
         self._ending.set()
@@ -69,8 +70,9 @@ def test_the_page_shows_the_fleet_and_stops_its_rollout(viewer: Viewer, watched:
         "return fetch('/api/session', {method: 'POST', headers: {'Content-Type': 'application/json'},"
         " body: JSON.stringify({pin: '12345', name: 'Ani'})})"
     )
-    hash = watched.hall.publish(changed(watched.hall.root))
-    watched.hall.ask("rollout", bundle=hash, **{**PLAN, "pause": 3600.0})
+    with watched.alone:
+        hash = watched.hall.publish(changed(watched.hall.root))
+        watched.hall.ask("rollout", bundle=hash, **{**PLAN, "pause": 3600.0})
     until(lambda: watched.hall.have(hash) == 1, HANG)
     viewer.driver.get(address)  # a centre without a robot of its own begins with its fleet
     viewer.shows("All houses", "main h1")

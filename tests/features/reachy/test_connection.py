@@ -5,6 +5,7 @@ from typing import NoReturn
 import pytest
 
 from lumen.errors import RobotLostError
+from lumen.features.reachy import link
 from lumen.language.commands import Look, Rest, Say, Wake
 from lumen.language.projects import Project
 from lumen.ports import Live, Perform
@@ -13,6 +14,7 @@ from tests.features.reachy.fake import ASLEEP, INIT, FakeDaemon
 from tests.waiting import HANG
 
 patient = pytest.mark.usefixtures("patient")
+SILENCE = link.SILENCE
 
 
 @patient
@@ -52,7 +54,11 @@ def test_a_robot_that_slept_or_was_sent_to_sleep_is_not_woken(project: Project) 
     again.close()
 
 
-def test_a_socket_that_stays_open_and_silent_is_noticed(awake: Driven, daemon: FakeDaemon) -> None:
+@patient
+def test_a_socket_that_stays_open_and_silent_is_noticed(
+    awake: Driven, daemon: FakeDaemon, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(link, "SILENCE", SILENCE)
     daemon.silent = True
     awake.until(lambda: "robot.lost" in awake.names(), "it is lost")
     daemon.silent = False

@@ -51,10 +51,10 @@ def test_nothing_is_sent_before_it_was_woken_and_after_it_sleeps(robot: Driven, 
     assert not daemon.targets
     robot.answer("w", Wake())
     robot.answer("r", Rest())
-    sent = len(daemon.targets)
+    sent = len(robot.sent)
     robot.robot.start("", Aim({"head_yaw": 0.4}))
     robot.until(lambda: not daemon.moves, "it lies")
-    assert len(daemon.targets) == sent
+    assert len(robot.sent) == sent
     assert robot.answer("again", Wake()).name == "done.command.again"
 
 

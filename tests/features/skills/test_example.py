@@ -8,11 +8,13 @@ from pathlib import Path
 import pytest
 
 from lumen.cli.main import main
+from lumen.features.skills import performer
 from tests import ROOT
 from tests.copying import copied_project
 from tests.features.skills.changing import found
 from tests.features.skills.stage import stage
 from tests.provided import program
+from tests.waiting import HANG
 
 EXAMPLE = ROOT / "examples/skills"
 ASKED, NEVER = threading.Event(), threading.Event()
@@ -71,8 +73,9 @@ def test_its_programs_run(tmp_path: Path, service: None) -> None:
 
 
 @pytest.mark.process
-def test_the_joke_ends_when_it_is_cancelled(tmp_path: Path, service: None) -> None:
+def test_the_joke_ends_when_it_is_cancelled(tmp_path: Path, service: None, monkeypatch: pytest.MonkeyPatch) -> None:
     program("node")
+    monkeypatch.setattr(performer, "GRACE", HANG)
     with stage(copied_project(EXAMPLE, tmp_path / "skills")) as made:
         id = made.start("joke", topic="nothing")
         made.until(ASKED.is_set)
