@@ -92,7 +92,7 @@ def test_a_robot_that_does_not_answer_is_not_shown_as_if_it_did(viewer: Viewer, 
     viewer.run("import('/pages/live.js').then(({ live }) => { live.since -= 7200e3; })")  # the page is open since long
     hosted.close()
     viewer.shows("the robot does not answer", ".connection")
-    assert re.search(r"answer 0:\d\d$", viewer.text(".connection").replace("\n", " "))
+    assert re.search(r"answer [\d:]*\d:\d\d$", viewer.text(".connection").replace("\n", " "))
     active = viewer.text(".leaf .since")
     viewer.run(LATER)
     until(lambda: re.search(r"answer 1:0\d:\d\d$", viewer.text(".connection").replace("\n", " ")), HANG)

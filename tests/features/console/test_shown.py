@@ -1,5 +1,6 @@
 """The pages of the day, the files and the hall show whole texts and the present state."""
 
+import re
 from collections.abc import Iterator
 from contextlib import closing
 from pathlib import Path
@@ -11,6 +12,7 @@ from tests.features.console.conftest import Hosted
 from tests.features.console.pages import Served
 from tests.features.console.test_conversation import violations
 from tests.features.console.viewer import Viewer
+from tests.live.conftest import wait_for_visitors
 from tests.saving import save
 from tests.waiting import HANG, until
 
@@ -41,7 +43,8 @@ DRAWN = "return document.querySelector('canvas')?.scene?.robot.visible"
 
 @pytest.fixture
 def own(copy: Path) -> Iterator[tuple[Hosted, Served]]:
-    """An exhibition that a test may edit, and its console."""
+    """An exhibition that a test may edit, with patience for its visitors, and its console."""
+    wait_for_visitors(copy, "30s", "2h")
     with closing(Hosted(copy)) as hosted, closing(Served(copy)) as served:
         until(lambda: [robot["connected"] for robot in served.browser.robots] == [True], HANG)
         yield hosted, served
@@ -115,21 +118,26 @@ def test_the_chart_is_drawn_with_the_active_states(viewer: Viewer, own: tuple[Ho
     assert viewer.complaints() == []
 
 
+def situated(viewer: Viewer, words: str) -> None:
+    """Wait until the situation has these words, and then how long it has lasted."""
+    viewer.until(lambda: re.search(rf"{words}[\d:]*\d:\d\d", viewer.text(".situation")))
+
+
 def test_the_page_begins_with_the_situation_in_a_sentence(viewer: Viewer, own: tuple[Hosted, Served]) -> None:
     """It names the action, the visitor, the duration and the remaining time; then the words, and how sure the ears
     were.
     """
     hosted, served = own
     viewer.open(served.console.address, "robot/NAO", ready=".leaf")
-    viewer.shows("Waits, 0:", ".situation")
+    situated(viewer, "Waits, ")
     visit(hosted, "Budi")
     hosted.send("heard", {"result": "blue cheese", "language": "en", "confidence": 0.41})
     viewer.shows("blue cheese (the ears are 41% sure)", ".talk-lines")
-    viewer.shows("for Budi, 0:", ".situation")
+    situated(viewer, "for Budi, ")
     height = "return document.querySelector('.declared').getBoundingClientRect().top"
     before = viewer.run(height)
     served.browser.command("goto", state="dance")
-    viewer.shows("Plays dance for Budi, 0:", ".situation")
+    situated(viewer, "Plays dance for Budi, ")
     viewer.shows(" s left", ".situation")
     viewer.shows("Robot: With pleasure!", ".talk-lines")
     assert viewer.run(height) == before

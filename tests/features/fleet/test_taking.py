@@ -29,6 +29,8 @@ def test_it_is_taken_between_two_visits_proved_and_in_the_folder_then(
     generate(key)
     signer = Signer(key)
     root = project(tmp_path / "house", signer.public)
+    hello = root / "behaviors/hello.yaml"
+    hello.write_text(hello.read_text("utf-8").replace("after: {30s: waiting}", "after: {1000h: waiting}"), "utf-8")
     files = changed(root)
     loaded, bus, heard, numbers = load(root), MemoryBus(str(tmp_path)), Collector(), Collector()
     bus.subscribe("fleet.numbers.itb.nao1", numbers)
@@ -51,6 +53,7 @@ def test_it_is_taken_between_two_visits_proved_and_in_the_folder_then(
         until(lambda: show.tick() and heard.bodies[-1]["state"] == "waiting", every=0.0)
         assert "greeting" in show.configuration
         assert show.project.hash == loaded.hash
+        show.send("heard", {"result": "goodbye", "language": "en"})
         until(lambda: show.tick() and heard.bodies[-1]["state"] == "probation", every=0.0)
         assert "waiting" in show.configuration
         until(lambda: show.tick() and heard.bodies[-1]["state"] == "proved", every=0.0)
