@@ -1,13 +1,15 @@
 """An exhibition that runs in a thread, with its bus, and a console of it."""
 
 import threading
+import time
 from collections.abc import Iterator
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
-from lumen.features.console import commands
+from lumen.features.console import access, commands
 from lumen.robot.bounded_robot import BoundedRobot
 from lumen.run.exhibition import Exhibition
 from lumen.run.making.modules import ModulesPlan
@@ -25,6 +27,13 @@ from tests.tour.conftest import copied, copy, project
 from tests.waiting import HANG, until
 
 __all__ = ["copy", "project"]
+
+
+@pytest.fixture
+def still(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The clock by which attempts at PINs are limited stands still."""
+    now = time.monotonic()
+    monkeypatch.setattr(access, "time", SimpleNamespace(monotonic=lambda: now, time=time.time))
 
 
 class Hosted:

@@ -2,16 +2,13 @@
 
 import json
 import socket
-import time
 from collections.abc import Iterator
 from contextlib import closing
 from pathlib import Path
-from types import SimpleNamespace
 
 import pytest
 
 from lumen.errors import UsageError
-from lumen.features.console import access as console_access
 from lumen.features.console import requests
 from lumen.features.console.access import Access, TooFastError, pins_from
 from lumen.features.console.gate import MAX_BODY
@@ -34,13 +31,6 @@ def alone(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
     served = Served(tmp_path_factory.mktemp("nobody"), pins=PINS)
     yield served.browser
     served.close()
-
-
-@pytest.fixture
-def still(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The clock by which attempts at PINs are limited stands still."""
-    now = time.monotonic()
-    monkeypatch.setattr(console_access, "time", SimpleNamespace(monotonic=lambda: now, time=time.time))
 
 
 @pytest.fixture(scope="module")

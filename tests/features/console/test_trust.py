@@ -131,6 +131,7 @@ def test_a_visitor_called_like_a_script_is_a_name_on_every_page(
     )
 
 
+@pytest.mark.usefixtures("still")
 def test_a_thousand_tries_in_a_row_get_nobody_in_and_rest_goes_on(locked: Browser, hosted: Hosted) -> None:
     """The tries come from many addresses, and one of them has the right PIN."""
     statuses = [tried(locked, number, f"127.0.{number % 4}.{1 + number % 250}") for number in range(1_000)]
