@@ -26,7 +26,7 @@ def test_one_process_of_voice_and_memory_serves_both(
     bus.subscribe("lumen.*.audio.text.to.speech", said)
     bus.subscribe("lumen.test.answer", asked)
     try:
-        process, told = hall.begin("--only", "voice,memory", robot="")
+        process, told = hall.begin("--only", "voice,memory")
         until(lambda: {body["robot"] for body in there.bodies if body["state"] == "here"} == {*NAMES})
         for name in NAMES:
             bus.publish(f"lumen.{name}.audio.text.stream", {"text": f"I am {name}", "language": "en", "name": name})
