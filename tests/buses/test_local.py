@@ -7,6 +7,7 @@ import struct
 import threading
 from collections.abc import Iterator
 from pathlib import Path
+from unittest.mock import Mock
 
 import pytest
 
@@ -20,6 +21,7 @@ from lumen.bus.memory import MemoryBus
 from lumen.errors import BusClosedError, BusUnreachableError
 from lumen.language.causes import MessageOrigin
 from lumen.run.asking import send_request
+from lumen.upkeep.drops import OTHERS, Drops
 from tests.waiting import HANG, Collector, finished, until
 
 
@@ -195,8 +197,19 @@ def test_the_last_words_of_an_exhibition_arrive(opened: Opened, monkeypatch: pyt
 
 
 @pytest.mark.once  # it opens nothing
+def test_what_an_exhibition_does_not_read_is_counted(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("lumen.bus.local.client.MAX_UNSENT_BYTES", 100)
+    told = list[str]()
+    buffer = SendBuffer(Drops(told.append))
+    for letter in (b"a", b"b", b"c"):
+        buffer.put(40 * letter)
+    assert buffer.take() == [40 * b"b", 40 * b"c"]
+    assert told == ["messages on `other keys` are dropped: the exhibition does not read them"]
+
+
+@pytest.mark.once  # it opens nothing
 def test_a_buffer_is_empty_only_once_all_is_sent() -> None:
-    buffer = SendBuffer()
+    buffer = SendBuffer(Mock())
     buffer.put(b"last words")
     assert buffer.take() == [b"last words"]
     assert not buffer.emptied(0.0)
@@ -272,11 +285,12 @@ class Narrow:
 def test_of_what_waits_the_oldest_gives_way_but_not_what_is_partly_sent(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("lumen.bus.local.server.MAX_UNSENT_BYTES", 100)
     wire = Narrow(5)
-    client = ClientConnection(wire)  # type: ignore[arg-type]
+    drops = Drops(print)
+    client = ClientConnection(wire, drops)  # type: ignore[arg-type]
     for letter in (b"a", b"b", b"c", b"d", b"e"):
         client.send(40 * letter)
         client.flush()
-    assert (wire.taken, client.bytes) == (5 * b"a", 80)
+    assert (wire.taken, client.bytes, drops.counts) == (5 * b"a", 80, {OTHERS: 3})
     wire.room = 1_000
     client.flush()
     assert wire.taken == 40 * b"a" + 40 * b"e"

@@ -29,7 +29,7 @@ from lumen.bus.local.frames import (
 from lumen.errors import BusClosedError, BusError, BusRefusedError, BusUnreachableError, Refused
 from lumen.language.routes import Route
 from lumen.ports import Bus, Message, MessageHandler, Outgoing
-from lumen.upkeep.drops import DropLog
+from lumen.upkeep.drops import OTHERS, DropLog, Drops
 from lumen.upkeep.threads import WatchedThread
 
 MAX_UNSENT_BYTES = 64 * 1024 * 1024
@@ -39,19 +39,20 @@ MAX_UNSENT_BYTES = 64 * 1024 * 1024
 class SendBuffer:
     """A queue of frames: any thread puts, one thread takes."""
 
-    def __init__(self) -> None:
+    def __init__(self, drops: Drops) -> None:
         self._frames: deque[bytes] = deque()
-        self._bytes = 0
+        self._bytes, self._drops = 0, drops
         self._ended = self._sending = False
         self._changed = threading.Condition()
 
     def put(self, frame: bytes) -> None:
-        """Append a frame; drop the oldest ones if all exceed MAX_UNSENT_BYTES."""
+        """Append a frame; drop and count the oldest ones if all exceed MAX_UNSENT_BYTES."""
         with self._changed:
             self._frames.append(frame)
             self._bytes += len(frame)
             while self._bytes > MAX_UNSENT_BYTES:
                 self._bytes -= len(self._frames.popleft())
+                self._drops.add(OTHERS, "the exhibition does not read them")
             self._changed.notify_all()
 
     def take(self) -> list[bytes]:
@@ -97,13 +98,13 @@ class LocalBusClient(Bus):
         self.gone = threading.Event()
         """Set when the exhibition ends; then nothing can be published any more."""
         self._wire, self._read = _connect(address)
-        self._unsent, self._closed = SendBuffer(), False
+        self._arriving, self._drops = threading.Condition(), DropLog(_log)
+        self._unsent, self._closed = SendBuffer(self._drops), False
         self._handlers: dict[int, MessageHandler] = {}
         self._returned: Callable[[str], None] = lambda _: None
         self._answers: dict[int, tuple[threading.Event, list[str]]] = {}
         self._numbers, self._marked = count(), threading.Event()
         self._arrived: deque[tuple[MessageHandler, int, Message]] = deque(maxlen=MAX_UNHANDLED_MESSAGES)
-        self._arriving, self._drops = threading.Condition(), DropLog(_log)
         self._threads = [
             WatchedThread(f"lumen-local-{name}", work)
             for name, work in (("out", self._send), ("in", self._receive), ("handlers", self._handle))

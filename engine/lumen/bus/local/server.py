@@ -31,7 +31,7 @@ from lumen.bus.local.frames import (
 from lumen.errors import BusError
 from lumen.language.causes import MessageOrigin
 from lumen.ports import Bus, KnowsListeners, Message
-from lumen.upkeep.drops import DropLog
+from lumen.upkeep.drops import OTHERS, DropLog, Drops
 from lumen.upkeep.threads import WatchedThread
 
 MAX_CLIENTS = 32
@@ -53,8 +53,8 @@ _log = logging.getLogger(__name__)
 class ClientConnection:
     """A connected process: its subscriptions, and the frames that wait to be sent to it."""
 
-    def __init__(self, wire: socket.socket) -> None:
-        self.wire, self.question, self.known = wire, nonce(), False
+    def __init__(self, wire: socket.socket, drops: Drops) -> None:
+        self.wire, self.question, self.known, self._drops = wire, nonce(), False, drops
         self.since = time.monotonic()
         self.undo: dict[int, Callable[[], None]] = {}
         self.returns = False
@@ -62,7 +62,7 @@ class ClientConnection:
         self.read, self.unsent, self.bytes, self.sent = bytearray(), deque[bytes](), 0, 0
 
     def send(self, data: bytes) -> None:
-        """Queue a frame; above the limit, drop the oldest frame that is not partly sent."""
+        """Queue a frame; above the limit, drop and count the oldest frame that is not partly sent."""
         self.unsent.append(data)
         self.bytes += len(data)
         # the first frame may be partly sent, and the last is the newest: drop those between
@@ -70,6 +70,7 @@ class ClientConnection:
             begun = self.unsent.popleft()
             self.bytes -= len(self.unsent.popleft())
             self.unsent.appendleft(begun)
+            self._drops.add(OTHERS, "the process that reads them is too slow")
 
     def flush(self) -> None:
         """Send as much as the socket accepts now. Raises OSError if the connection is broken."""
@@ -142,7 +143,7 @@ class LocalBusServer:
                 wire.close()
                 return
             wire.setblocking(False)
-            client = self._clients[wire] = ClientConnection(wire)
+            client = self._clients[wire] = ClientConnection(wire, self._drops)
             self._selector.register(wire, selectors.EVENT_READ)
             client.send(frame("prove", client.question))
 
