@@ -9,10 +9,13 @@ import pytest
 
 from lumen.cli.main import main
 from lumen.errors import LumenError, UsageError
+from lumen.project import packaged
 from lumen.project import running_project as module
 from lumen.project.home import STATE_FOLDER, home_of
 from lumen.project.packaged import PACKAGE, shipped_root
 from lumen.project.running_project import copy_of_shipped, project_to_run, running_project
+from tests import ROOT
+from tests.copying import copied_project
 from tests.tables import for_each
 
 
@@ -43,13 +46,25 @@ def small(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
         folder.chmod(0o755)
 
 
+@pytest.fixture
+def installed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+    """An installation of the shipped exhibition, into which no other test writes."""
+    root = copied_project(ROOT, tmp_path / "installed")
+    copied_project(ROOT / "schemas", root / "schemas")
+    monkeypatch.setattr(packaged, "PACKAGE", root / "engine" / "lumen")
+    module._digest.cache_clear()
+    yield root
+    module._digest.cache_clear()
+
+
 @pytest.mark.process
 def test_a_run_in_an_empty_folder_writes_into_the_state_folder_only(
-    state: Path, capsys: pytest.CaptureFixture[str]
+    state: Path, installed: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    before = {*shipped_root().iterdir(), *(shipped_root() / STATE_FOLDER).rglob("*")}
+    assert shipped_root() == installed
+    before = {*installed.rglob("*")}
     assert main(["run", "--robot", "recording", "--speed", "max", "--for", "1s"]) == 0
-    assert {*shipped_root().iterdir(), *(shipped_root() / STATE_FOLDER).rglob("*")} == before
+    assert {*installed.rglob("*")} == before
     assert list(Path.cwd().iterdir()) == []
     (root,) = (state / "lumen").iterdir()
     journal = root / STATE_FOLDER / "journal"
