@@ -1,5 +1,6 @@
 """Without a project, `lumen run` plays a copy of the shipped exhibition: nothing is written into the installation."""
 
+import sys
 import threading
 from collections.abc import Iterator
 from contextlib import suppress
@@ -9,14 +10,15 @@ import pytest
 
 from lumen.cli.main import main
 from lumen.errors import LumenError, UsageError
-from lumen.project import packaged
 from lumen.project import running_project as module
 from lumen.project.home import STATE_FOLDER, home_of
 from lumen.project.packaged import PACKAGE, shipped_root
 from lumen.project.running_project import copy_of_shipped, project_to_run, running_project
 from tests import ROOT
 from tests.copying import copied_project
+from tests.guarded import run_guarded
 from tests.tables import for_each
+from tests.waiting import HANG
 
 
 @pytest.fixture
@@ -46,30 +48,36 @@ def small(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
         folder.chmod(0o755)
 
 
-@pytest.fixture
-def installed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
-    """An installation of the shipped exhibition, into which no other test writes."""
-    root = copied_project(ROOT, tmp_path / "installed")
-    copied_project(ROOT / "schemas", root / "schemas")
-    monkeypatch.setattr(packaged, "PACKAGE", root / "engine" / "lumen")
-    module._digest.cache_clear()
-    yield root
-    module._digest.cache_clear()
+INSTALLED = """
+import sys
+from pathlib import Path
+from lumen.project import packaged
+package, packaged.PACKAGE = packaged.PACKAGE, Path(sys.argv[1], "engine", "lumen")
+assert str(packaged.shipped_root()) == sys.argv[1]  # and so from now on
+packaged.PACKAGE = package
+from lumen.cli.main import main
+sys.exit(main(sys.argv[2:]))
+"""
+"""`lumen` as if it were installed in a folder."""
 
 
 @pytest.mark.process
 def test_a_run_in_an_empty_folder_writes_into_the_state_folder_only(
-    state: Path, installed: Path, capsys: pytest.CaptureFixture[str]
+    state: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert shipped_root() == installed
+    installed = copied_project(ROOT, tmp_path / "installed")  # other tests write into the repository
+    copied_project(ROOT / "schemas", installed / "schemas")
     before = {*installed.rglob("*")}
-    assert main(["run", "--robot", "recording", "--speed", "max", "--for", "1s"]) == 0
+    words = ["run", "--robot", "recording", "--speed", "max", "--for", "1s"]
+    command = [sys.executable, "-c", INSTALLED, installed, *words]
+    done = run_guarded(command, capture_output=True, text=True, timeout=HANG)
+    assert done.returncode == 0, done.stderr
     assert {*installed.rglob("*")} == before
     assert list(Path.cwd().iterdir()) == []
     (root,) = (state / "lumen").iterdir()
     journal = root / STATE_FOLDER / "journal"
     assert list(journal.rglob("*.journal"))
-    (line,) = [line for line in capsys.readouterr().err.splitlines() if "no lumen.yaml" in line]
+    (line,) = [line for line in done.stderr.splitlines() if "no lumen.yaml" in line]
     assert f"a copy of its own exhibition, {root}." in line
     assert str(journal) in line
     assert main(["replay"]) == 0  # the other commands find it
