@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Iterator
 from math import nan
-from pathlib import Path
 from typing import Protocol
 
 import pytest
@@ -30,7 +29,7 @@ class Body(Robot, Hall, Protocol):
 
 
 def simulated(project: Project) -> Body:
-    return SimulatedRobot(project.body, Path(project.root) / "models", project.hall)
+    return SimulatedRobot(project.body, ROOT / "models", project.hall)
 
 
 def recording(project: Project) -> Body:

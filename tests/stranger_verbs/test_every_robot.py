@@ -1,20 +1,20 @@
 """Each robot performs a verb of a package, ends it at a stop, and refuses one that moves it while it rests."""
 
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 
 import lumen
 from lumen.language.commands import Do, Rest, Stop
 from lumen.language.events import RESULT, Event
-from tests import ROOT
 from tests.seams.test_robot import ROBOTS, Body
 from tests.waiting import until
 
 
 @pytest.fixture(params=ROBOTS.values(), ids=list(ROBOTS))
-def robot(request: pytest.FixtureRequest, blinker: None) -> Iterator[Body]:
-    body: Body = request.param(lumen.load(ROOT))
+def robot(request: pytest.FixtureRequest, project: Path) -> Iterator[Body]:
+    body: Body = request.param(lumen.load(project))
     yield body
     body.close()
 
