@@ -7,6 +7,8 @@ take a sixth of the time of tests/lint.
 
 import gc
 
+import pytest
+
 THRESHOLDS = 5000, 10, 100
 """The number of new objects after which the youngest are searched, and of searches after which older ones are."""
 
@@ -17,3 +19,9 @@ def pytest_collection_finish() -> None:
     gc.freeze()
     gc.set_threshold(*THRESHOLDS)
     gc.enable()
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_unconfigure() -> None:
+    """Let nothing be searched again after the full collection with which pytest ends: it would take 2 s for each."""
+    gc.freeze()
