@@ -33,6 +33,22 @@ def test_equal_input_is_answered_from_memory_and_other_input_anew() -> None:
     assert [memoize("slot", given, make) for given in ("a", "a", "b", "b", "a")] == [1, 1, 2, 2, 3]
 
 
+def test_values_that_were_equal_once_are_not_compared_in_depth_again() -> None:
+    compared = []
+
+    class Deep:
+        def __eq__(self, other: object) -> bool:
+            compared.append(other)
+            return isinstance(other, Deep)
+
+        __hash__ = None  # type: ignore[assignment]
+
+    read_anew = [(Deep(),), (Deep(),)]
+    for given in (read_anew[0], read_anew[1], read_anew[1], read_anew[1]):
+        memoize("slot", given, int)
+    assert len(compared) == 1
+
+
 def test_memory_does_not_grow_without_end(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(recollection, "MAX_MEMOIZED", 3)
     monkeypatch.setattr(recollection, "_last", {})

@@ -48,14 +48,15 @@ def memoize(slot: Hashable, given: Any, make: Callable[[], T]) -> T:
     _asked.add(slot)
     known = _last.get(slot)
     if known is not None and known[0] == given and _of_the_same_types(known[0], given):
-        return known[1]  # type: ignore[no-any-return]
-    made = make()
-    if len(_last) >= MAX_MEMOIZED:
-        for one in (_last, _unpacked, _asked):
-            one.clear()
-        _asked.add(slot)
-    _last[slot] = given, made
-    _unpacked.discard(slot)
+        made: T = known[1]
+    else:
+        made = make()
+        if len(_last) >= MAX_MEMOIZED:
+            for one in (_last, _unpacked, _asked):
+                one.clear()
+            _asked.add(slot)
+        _unpacked.discard(slot)
+    _last[slot] = given, made  # the next comparison is quick if it is of the same objects
     return made
 
 
