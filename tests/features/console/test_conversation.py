@@ -83,7 +83,7 @@ def test_the_language_model_is_silenced(viewer: Viewer, asked: Hosted, console: 
     viewer.run("document.querySelector('input[name=model-NAO]:checked').focus()")
     viewer.type(Keys.ARROW_RIGHT)
     until(lambda: asked.exhibition.loop.performer.questions.silenced, HANG)
-    viewer.shows("Model bahasa dibungkam: selesai", ".told")
+    viewer.tells("Model bahasa dibungkam: selesai")
     until(lambda: viewer.all("input[name=model-NAO][value=false]:checked"), HANG)
     assert violations(viewer) == []
 

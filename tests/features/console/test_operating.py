@@ -5,7 +5,6 @@ from contextlib import suppress
 
 import pytest
 from selenium.common.exceptions import WebDriverException
-from selenium.webdriver import ActionChains
 from selenium.webdriver.common.keys import Keys
 
 from lumen.features.console.people import Role
@@ -188,21 +187,19 @@ def test_a_wrong_pin_is_told_and_lets_nobody_in(viewer: Viewer, console: str) ->
 def test_a_button_is_pressed_held_or_asked_about_with_the_mouse_and_by_its_key(viewer: Viewer, hall: Hosted) -> None:
     before = hall.exhibition.context["n"]
     quick, held, asked, never = (f".declared-list li:nth-child({n}) .declared" for n in range(1, 5))
-    viewer.type("q")
+    viewer.press("q", quick)
     counts(hall, before + 1)
     viewer.click(quick)
     counts(hall, before + 2)
     viewer.click(held)
-    viewer.type("h")
+    viewer.press("h", held)
     viewer.click(asked)
     viewer.shows("Asked: really?", "dialog")
     assert hall.exhibition.context["n"] == before + 2
     viewer.click("dialog .strong")
     counts(hall, before + 102)
     until(lambda: not viewer.all("dialog"), HANG)
-    ActionChains(viewer.driver).key_down("h").perform()
-    counts(hall, before + 112)
-    ActionChains(viewer.driver).key_up("h").perform()
+    viewer.press("h", held, holding=lambda: counts(hall, before + 112))
     assert viewer.all(never)[0].get_attribute("aria-disabled") == "true"
     assert "context.n < 0" in str(viewer.all(never)[0].get_attribute("aria-description"))
     told = "return [...document.querySelectorAll('.entry-text')].map((one) => one.textContent).join()"
@@ -234,7 +231,7 @@ def test_a_button_that_waits_for_go_is_not_told_as_a_failure(viewer: Viewer, hal
     viewer.click(".approval .go")
     viewer.shows("stage", ".leaf")
     viewer.click(".declared-list li:nth-child(2) .declared")
-    viewer.shows("Bow: waits for a GO", ".told [data-state=finished]")
+    viewer.tells("Bow: waits for a GO")
     viewer.shows("Waits for your GO", ".approvals")
     viewer.click(".approval .go")
     viewer.shows("hall", ".leaf")
@@ -304,11 +301,11 @@ def test_a_time_that_runs_out_decides_and_is_seen_coming(viewer: Viewer, hall: H
 def test_who_lets_it_go_alone_is_asked_no_more(viewer: Viewer, hall: Hosted) -> None:
     viewer.click(".choice label:last-child")
     until(lambda: viewer.all(".choice input[value=alone]:checked"), HANG)
-    viewer.shows("go alone: done", ".told")
+    viewer.tells("go alone: done")
     says(hall, "dance")
     viewer.shows("stage", ".leaf")
     viewer.click(".choice label:nth-of-type(1)")
-    viewer.shows("ask me: done", ".told")
+    viewer.tells("ask me: done")
 
 
 def test_refused_files_are_not_said_to_be_the_ones_that_run(viewer: Viewer, hall: Hosted, console: str) -> None:

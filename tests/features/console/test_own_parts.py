@@ -142,7 +142,7 @@ def test_now_lists_them_and_begins_a_skill(viewer: Viewer, own: Hosted, console:
     viewer.click("[data-skill=spray] input[name=duration]")
     viewer.type("10ms")
     viewer.click("[data-skill=spray] .begin-skill button")
-    viewer.shows("Skill spray: done", ".told")
+    viewer.tells("Skill spray: done")
     viewer.shows("ready", "[data-skill=spray] .badge")
     viewer.click("[data-skill=fail] summary")
     viewer.click("[data-skill=fail] .begin-skill button")

@@ -268,7 +268,7 @@ def test_a_button_that_was_held_long_enough_does_it_on_a_busy_page_too(viewer: V
     viewer.run(HELD, 999)
     assert "End the visit" not in viewer.text(".told")
     viewer.run(HELD, 1000)
-    viewer.shows("End the visit: done", ".told")
+    viewer.tells("End the visit: done")
 
 
 def test_a_fork_shows_what_would_have_been_beside_what_was(

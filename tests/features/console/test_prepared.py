@@ -80,7 +80,7 @@ def test_an_operator_keeps_a_sentence_and_says_it_with_one_press(viewer: Viewer,
         assert violations(viewer) == []
         viewer.click(".prepared-say")
         viewer.shows("Please come closer.", ".lines-of-talk")
-        viewer.shows("Say “Please come closer.”: done", ".told")
+        viewer.tells("Say “Please come closer.”: done")
         viewer.run("document.querySelector('.prepared li .plain').focus()")
         viewer.type(Keys.ENTER)
         until(lambda: not viewer.all(".prepared li"))

@@ -64,7 +64,7 @@ def test_buttons_zoom_around_the_moment_and_show_the_whole_day_again(day: Viewer
     assert "to" in day.text(".zoom [role=status]")
     assert violations(day) == []
     for _ in range(12):
-        day.click(".zoom-in")
+        day.lands(day.all(".zoom-in")[0], ".zoom-in")  # which does nothing when no more can be shown
     until(lambda: length(day) <= 32_000, HANG)
     assert day.run("return document.querySelector('.zoom-in').ariaDisabled") == "true"
     assert all(text.count(":") == 2 for text in day.run(TICKS))  # so near, times have seconds

@@ -20,11 +20,27 @@ HOLD = 10.0
 PRESSES = "return document.querySelector('rest-button[main]').presses"
 
 LANDING = """
-const [selector] = arguments, land = (click) => { window.landed = Boolean(click.target.closest(selector)); };
+const [kind, selector] = arguments, land = (event) => {
+  const found = kind === "click" ? event.target.closest(selector) : document.querySelector(selector);
+  window.landed = found !== null && found.ariaDisabled !== "true";
+};
 window.landed = false;
-addEventListener("click", land, { capture: true, once: true });
+addEventListener(kind, land, { capture: true, once: true });
 """
-"""Notices whether the next click is on an element that matches."""
+"""Notices whether the next click is on an element that matches, or the next key finds one, and it can be used."""
+
+TELLS = """
+const texts = new WeakMap();
+globalThis.everTold = [];
+new MutationObserver(() => {
+  for (const one of document.querySelectorAll(".told p")) {
+    if (texts.get(one) === one.textContent) continue;
+    texts.set(one, one.textContent);
+    everTold.push(one.textContent);
+  }
+}).observe(document, { subtree: true, childList: true, characterData: true });
+"""
+"""Keeps all that a page has told at its foot, where good news stays for some seconds only."""
 
 
 class Viewer:
@@ -55,7 +71,7 @@ class Viewer:
         memory = (
             f"for (const [key, value] of {json.dumps([*kept.items()])}) localStorage.setItem(`lumen.${{key}}`, value);"
         )
-        script = f"if (location.origin !== 'null') {{ {memory} {self._first} }}"
+        script = f"if (location.origin !== 'null') {{ {memory} {TELLS} {self._first} }}"
         self._before = self.command("Page.addScriptToEvaluateOnNewDocument", {"source": script})["identifier"]
         for kind in self._logs:
             self.log(kind)
@@ -90,6 +106,10 @@ class Viewer:
         """Wait until the visible elements that match contain the text."""
         self.until(lambda: text in self.text(selector))
 
+    def tells(self, text: str) -> None:
+        """Wait until the page has told what contains the text at its foot; it may be gone since."""
+        self.until(lambda: any(text in one for one in self.run("return everTold")))
+
     def click(self, selector: str) -> None:
         """Click the first match; retry while the page draws it anew, or disables it as it is away for a moment."""
 
@@ -102,24 +122,47 @@ class Viewer:
         self.until(clicked)
 
     def lands(self, element: WebElement, selector: str) -> bool:
-        """Scroll to a match and click it; return False if the page moved it, so that the click went elsewhere."""
-        self.run(LANDING, selector)
+        """Scroll to a match and click it; return False if the page moved it meanwhile, or it could not be used."""
+        self.run(LANDING, "click", selector)
         self.run("arguments[0].scrollIntoView({ block: 'nearest' })", element)
         element.click()
         return self.run("return window.landed") is not False  # undefined on the page to which the click led
 
     def hold(self, find: Callable[[], WebElement | None], text: str) -> None:
-        """Hold the element until the page reports this text; again if the page was away, or drew it anew, meanwhile."""
+        """Hold the element until the page tells this text; again if the page was away, or drew it anew, meanwhile."""
+        before = len(self.run("return everTold"))
+
+        def told() -> bool:
+            return any(text in one for one in self.run("return everTold")[before:])
 
         def held() -> bool:
             with suppress(WebDriverException, AssertionError):
-                if (found := find()) and text not in self.text(".told"):
+                if (found := find()) and not told():
                     ActionChains(self.driver).click_and_hold(found).perform()
-                    until(lambda: text in self.text(".told"), HOLD)
+                    until(told, HOLD)
             ActionChains(self.driver).release().perform()
-            return text in self.text(".told")
+            return told()
 
         self.until(held)
+
+    def press(self, key: str, selector: str, *, holding: Callable[[], None] | None = None) -> None:
+        """Press the key of the first match; again while that can not be used, as the page is away for a moment.
+
+        The key is released after `holding`, without it at once.
+        """
+
+        def pressed() -> bool:
+            self.run(LANDING, "keydown", selector)
+            if not holding:
+                self.type(key)
+                return bool(self.run("return window.landed"))
+            ActionChains(self.driver).key_down(key).perform()
+            if landed := bool(self.run("return window.landed")):
+                holding()
+            ActionChains(self.driver).key_up(key).perform()
+            return landed
+
+        self.until(pressed)
 
     def type(self, *keys: str) -> None:
         ActionChains(self.driver).send_keys(*keys).perform()
