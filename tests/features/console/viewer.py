@@ -40,7 +40,7 @@ new MutationObserver(() => {
   }
 }).observe(document, { subtree: true, childList: true, characterData: true });
 """
-"""Keeps all that a page has told at its foot, where good news stays for some seconds only."""
+"""Keeps all messages at the foot of a page, where good news stays for some seconds only."""
 
 
 class Viewer:
@@ -107,7 +107,7 @@ class Viewer:
         self.until(lambda: text in self.text(selector))
 
     def tells(self, text: str) -> None:
-        """Wait until the page has told what contains the text at its foot; it may be gone since."""
+        """Wait until a message with this text was at the foot of the page; it may be gone since."""
         self.until(lambda: any(text in one for one in self.run("return everTold")))
 
     def click(self, selector: str) -> None:
@@ -129,7 +129,7 @@ class Viewer:
         return self.run("return window.landed") is not False  # undefined on the page to which the click led
 
     def hold(self, find: Callable[[], WebElement | None], text: str) -> None:
-        """Hold the element until the page tells this text; again if the page was away, or drew it anew, meanwhile."""
+        """Hold the element until a message has this text; again if the page was away, or drew it anew, meanwhile."""
         before = len(self.run("return everTold"))
 
         def told() -> bool:
