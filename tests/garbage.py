@@ -7,8 +7,6 @@ take a sixth of the time of tests/lint.
 
 import gc
 
-import pytest
-
 THRESHOLDS = 5000, 10, 100
 """The number of new objects after which the youngest are searched, and of searches after which older ones are."""
 
@@ -21,7 +19,10 @@ def pytest_collection_finish() -> None:
     gc.enable()
 
 
-@pytest.hookimpl(trylast=True)
-def pytest_unconfigure() -> None:
-    """Let nothing be searched again after the full collection with which pytest ends: it would take 2 s for each."""
+def pytest_sessionfinish() -> None:
+    """Search all objects, which takes 2 s after many tests, and let nothing that is left be searched again.
+
+    pytest would search twice, after a worker has reported its end; 5 s later execnet interrupts a worker.
+    """
+    gc.collect()
     gc.freeze()
