@@ -24,7 +24,7 @@ from tests import ROOT
 from tests.guarded import STDOUT, Guarded, TimeoutExpired, temporary_folder
 from tests.provided import program
 from tests.rabbitmq import GIVEN, VIRTUAL_HOSTS, GivenBroker, LentBroker, RabbitMQ
-from tests.waiting import HANG, until
+from tests.waiting import HANG, UNLIMITED, until
 
 PORT = "LUMEN_TEST_SERVERS"
 """The environment's name for the port."""
@@ -198,7 +198,7 @@ def patient_bus() -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:  # of its own: a test may undo its patches
         for name in limits:
             patch.setattr(f"lumen.features.rabbitmq.{name}", HANG)
-        patch.setattr("lumen.features.rabbitmq.broker.HEARTBEAT_INTERVAL", int(HANG))
+        patch.setattr("lumen.features.rabbitmq.broker.HEARTBEAT_INTERVAL", int(UNLIMITED))
         yield
 
 

@@ -10,6 +10,8 @@ from typing import Any
 
 HANG = 300.0
 """The bound of every wait for something real: a slow and loaded machine stays far below it [s]."""
+UNLIMITED = 10 * HANG
+"""A limit of the engine that a test takes away [s]: a test that waits for it fails each time, not now and then."""
 IDLE = 9.0
 """The pause between two looks, in multiples of the time that a look took."""
 LONGEST_PAUSE = 0.25

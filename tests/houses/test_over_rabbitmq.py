@@ -15,7 +15,7 @@ from lumen.run import claiming, node
 from tests.guarded import DEVNULL, STDOUT, Guarded
 from tests.rabbitmq import RabbitMQ
 from tests.relay import Relay
-from tests.waiting import HANG, until
+from tests.waiting import HANG, UNLIMITED, until
 
 PATIENT = """
 import sys
@@ -95,8 +95,8 @@ def test_two_robots_of_one_process(hall: Hall, monkeypatch: pytest.MonkeyPatch) 
     process, _ = hall.begin()
     until(hall.both)
     with monkeypatch.context() as patient:  # the first may announce itself late
-        patient.setattr(claiming, "CLAIM_DURATION", HANG)
-        patient.setattr(node, "CLAIM_DURATION", HANG)
+        patient.setattr(claiming, "CLAIM_DURATION", UNLIMITED)
+        patient.setattr(node, "CLAIM_DURATION", UNLIMITED)
         code, said = hall.call("run", "--robot", "recording", "--robot-name", "ana")
     assert (code, "is already the robot of ana on this bus: end it first" in said) == (2, True)
     assert hall.call("stop", "--robot-name", "ana")[0] == 0

@@ -12,7 +12,7 @@ from lumen.run.reload import idle_process
 from lumen.run.reload.idle_process import end_idle, take
 from lumen.run.reload.validation_worker import COMMAND, ValidationWorker, load_apart
 from lumen.upkeep import judge_process
-from tests.waiting import HANG, until
+from tests.waiting import UNLIMITED, until
 
 pytestmark = pytest.mark.rest  # expensive
 
@@ -24,7 +24,7 @@ SORRY = b'en: "I am sorry, I did not understand that."'
 def begun(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[list[int]]:
     """The numbers of the processes that were begun; no project is known from before."""
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
-    monkeypatch.setattr(idle_process, "LINGER", HANG)
+    monkeypatch.setattr(idle_process, "LINGER", UNLIMITED)
     end_idle()
     numbers, usual = list[int](), judge_process.subprocess.Popen
 

@@ -12,7 +12,7 @@ from tests.processes.troupe import STORIES, Troupe
 from tests.rabbitmq import RabbitMQ
 from tests.tour.conftest import copy as whole
 from tests.tour.conftest import project
-from tests.waiting import HANG
+from tests.waiting import UNLIMITED
 
 __all__ = ["project", "whole"]
 
@@ -45,4 +45,4 @@ def patient(monkeypatch: pytest.MonkeyPatch) -> None:
         (guard, "BRAIN_TIMEOUT"),
         (robot, "COMMAND_ANSWER_TIMEOUT"),
     ):
-        monkeypatch.setattr(module, limit, HANG)
+        monkeypatch.setattr(module, limit, UNLIMITED)

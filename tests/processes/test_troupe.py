@@ -16,7 +16,7 @@ from lumen.run.parts.hosted_robot import HostedRobotPart
 from lumen.run.snapshot_store import SNAPSHOT_FILE
 from tests.processes.troupe import Troupe, alone, deeds
 from tests.relay import Relay
-from tests.waiting import HANG, Collector
+from tests.waiting import HANG, UNLIMITED, Collector
 
 
 @pytest.mark.once
@@ -121,7 +121,7 @@ def test_a_brain_for_one_robot_moves_no_other(troupe: Troupe) -> None:
 def test_a_second_one_of_the_same_kind_is_refused(troupe: Troupe, part: str, monkeypatch: pytest.MonkeyPatch) -> None:
     robot, brain = troupe.join("robot"), troupe.join("brain")
     troupe.until(lambda: "idle" in brain.states)
-    monkeypatch.setattr(node, "CLAIM_DURATION", HANG)  # the first may announce itself late
+    monkeypatch.setattr(node, "CLAIM_DURATION", UNLIMITED)  # the first may announce itself late
     troupe.join(part)
     with pytest.raises(UsageError, match=f"is already the {part} of NAO on this bus: end it first"):
         troupe.until(lambda: False)

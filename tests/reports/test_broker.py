@@ -38,7 +38,7 @@ from tests.guarded import run_guarded
 from tests.rabbitmq import RabbitMQ
 from tests.relay import Relay
 from tests.tables import for_each
-from tests.waiting import HANG, Collector, until
+from tests.waiting import UNLIMITED, Collector, until
 
 MINIMAL = ROOT / "examples/minimal"
 
@@ -432,7 +432,7 @@ def test_no_second_brain_starts_while_the_first_is_unreachable(
     short: RabbitMQ, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(copied_project(MINIMAL, tmp_path / "minimal"))
-    monkeypatch.setattr(node, "CLAIM_DURATION", HANG)
+    monkeypatch.setattr(node, "CLAIM_DURATION", UNLIMITED)
     assert main(["run", "--only", "brain", "--bus", short.url]) == 2
     assert "can't check whether another process is the brain of NAO" in capsys.readouterr().err
 

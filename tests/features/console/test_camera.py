@@ -17,7 +17,7 @@ from lumen.features.console.camera import Cameras, jpeg_in
 from lumen.ports import Bus, MessageHandler
 from tests.features.console.conftest import Hosted
 from tests.features.console.pages import Browser, Served
-from tests.waiting import HANG, until
+from tests.waiting import HANG, UNLIMITED, until
 
 JPEG = b"\xff\xd8\xff\xe0picture\xff\xd9"
 KEY = "avatar.NAO.data.image"
@@ -58,8 +58,8 @@ def test_images_come_while_somebody_looks(
         answer.close()
         connection.close()
         until(lambda: not cameras.looked_at("NAO"))
-        monkeypatch.setattr(camera, "FRESH", HANG)
-        monkeypatch.setattr(camera, "LINGER", HANG)
+        monkeypatch.setattr(camera, "FRESH", UNLIMITED)
+        monkeypatch.setattr(camera, "LINGER", UNLIMITED)
         until(lambda: browser.get("/camera/NAO?still").status == 200)
         still = browser.get("/camera/NAO?still")
         assert (still.headers["content-type"], still.body) == ("image/jpeg", JPEG)

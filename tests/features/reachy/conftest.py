@@ -6,7 +6,7 @@ from lumen.features.reachy import link, skills
 from lumen.language.projects import Project
 from tests.features.reachy.driving import Driven, reachy_project
 from tests.features.reachy.fake import FakeDaemon
-from tests.waiting import HANG
+from tests.waiting import UNLIMITED
 
 
 @pytest.fixture(scope="session")
@@ -17,8 +17,8 @@ def project() -> Project:
 @pytest.fixture
 def patient(monkeypatch: pytest.MonkeyPatch) -> None:
     """A daemon on a crowded machine may be silent, and the head late, for longer than on a robot."""
-    monkeypatch.setattr(link, "SILENCE", HANG)
-    monkeypatch.setattr(skills, "GRACE", HANG)
+    monkeypatch.setattr(link, "SILENCE", UNLIMITED)
+    monkeypatch.setattr(skills, "GRACE", UNLIMITED)
 
 
 @pytest.fixture

@@ -59,6 +59,8 @@ def test_a_socket_that_stays_open_and_silent_is_noticed(
     awake: Driven, daemon: FakeDaemon, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(link, "SILENCE", SILENCE)
+    last = awake.robot._link.measured.at
+    awake.until(lambda: awake.robot._link.measured.at != last, "a wait that began with the longer limit has ended")
     daemon.silent = True
     awake.until(lambda: "robot.lost" in awake.names(), "it is lost")
     daemon.silent = False

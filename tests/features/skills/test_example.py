@@ -14,7 +14,7 @@ from tests.copying import copied_project
 from tests.features.skills.changing import found
 from tests.features.skills.stage import stage
 from tests.provided import program
-from tests.waiting import HANG
+from tests.waiting import UNLIMITED
 
 EXAMPLE = ROOT / "examples/skills"
 ASKED, NEVER = threading.Event(), threading.Event()
@@ -75,7 +75,7 @@ def test_its_programs_run(tmp_path: Path, service: None) -> None:
 @pytest.mark.process
 def test_the_joke_ends_when_it_is_cancelled(tmp_path: Path, service: None, monkeypatch: pytest.MonkeyPatch) -> None:
     program("node")
-    monkeypatch.setattr(performer, "GRACE", HANG)
+    monkeypatch.setattr(performer, "GRACE", UNLIMITED)
     with stage(copied_project(EXAMPLE, tmp_path / "skills")) as made:
         id = made.start("joke", topic="nothing")
         made.until(ASKED.is_set)

@@ -13,7 +13,7 @@ from lumen.project import load
 from tests.features.skills.changing import project_in
 from tests.features.skills.stage import Stage, stage
 from tests.rabbitmq import RabbitMQ
-from tests.waiting import HANG, until
+from tests.waiting import UNLIMITED, until
 
 MANIFEST = "in: {required: [litres], properties: {litres: {type: number}}}\nperformed-by: {module: pump}\n"
 
@@ -49,7 +49,7 @@ def test_a_module_is_called_and_its_answer_is_the_result(pumping: Stage) -> None
 
 
 def test_an_answer_of_a_module_wakes_the_call(pumping: Stage, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(performer, "LOOK", 10 * HANG)
+    monkeypatch.setattr(performer, "LOOK", UNLIMITED)
     pump = Pump(pumping.bus, {"progress": 0.5, "text": "half"})
     id = pumping.start("pump", litres=1)
     pumping.until(lambda: pumping.told == ["50% half"])
@@ -77,7 +77,7 @@ def test_a_removed_skill_of_a_module_is_refused(pumping: Stage) -> None:
 
 
 def test_a_module_hears_of_a_cancel(pumping: Stage, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(performer, "GRACE", HANG)  # a slow machine must not report it
+    monkeypatch.setattr(performer, "GRACE", UNLIMITED)  # a slow machine must not report it
     pump = Pump(pumping.bus, {"accepted": True})
     id = pumping.start("pump", litres=1)
     pumping.until(lambda: pump.heard)
@@ -109,7 +109,7 @@ def test_a_module_that_nobody_started_fails_the_skill(pumping: Stage, monkeypatc
 def test_a_module_on_another_machine_is_called_over_rabbitmq(
     tmp_path: Path, broker: RabbitMQ, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(module_call, "ACCEPTING", HANG)
+    monkeypatch.setattr(module_call, "ACCEPTING", UNLIMITED)
     root = project_in(tmp_path, {"skills/pump.yaml": ("", MANIFEST)})
     here, there = connect(broker.url), connect(broker.url)
     Pump(there, {"result": {"litres": 3}})

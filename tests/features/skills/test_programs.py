@@ -19,7 +19,7 @@ from lumen.project import load
 from tests.features.skills.changing import project_in
 from tests.features.skills.stage import Stage, stage
 from tests.provided import program
-from tests.waiting import APART, HANG, until
+from tests.waiting import APART, HANG, UNLIMITED, until
 
 pytestmark = pytest.mark.process
 
@@ -129,7 +129,7 @@ def test_a_stop_never_waits_for_a_skill_and_one_that_hangs_is_killed(
     acting: Stage, body: str, killed: bool, stop: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     if not killed:
-        monkeypatch.setattr(performer, "GRACE", HANG)  # a slow machine must not kill it
+        monkeypatch.setattr(performer, "GRACE", UNLIMITED)  # a slow machine must not kill it
     code(acting, body)
     id = acting.start("act")
     acting.until_told("ready")
