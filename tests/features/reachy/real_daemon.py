@@ -1,5 +1,6 @@
 """The daemon of `reachy-mini` without a robot: `--mockup-sim` reaches targets at once, `--sim` has physics."""
 
+import fcntl
 import os
 import socket
 import sys
@@ -23,10 +24,14 @@ MISSING = ROOT / ".cache/reachy_mini.missing"
 @cache
 def program() -> Path:
     """Return the daemon's program, installed at the first call; skip the test if it can't be installed."""
-    if MISSING.exists():
-        pytest.skip(f"{MISSING.read_text().strip()} (delete {MISSING.relative_to(ROOT)} to try again)")
     script = ROOT / "tests/features/reachy/install_daemon.sh"
-    done = run_guarded(["sh", script], capture_output=True, text=True, env={**downloading(), "PYTHON": sys.executable})
+    MISSING.parent.mkdir(exist_ok=True)
+    with MISSING.with_suffix(".lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)  # another run of the tests may be installing it
+        if MISSING.exists():
+            pytest.skip(f"{MISSING.read_text().strip()} (delete {MISSING.relative_to(ROOT)} to try again)")
+        environment = {**downloading(), "PYTHON": sys.executable}
+        done = run_guarded(["sh", script], capture_output=True, text=True, env=environment)
     if done.returncode:
         pytest.skip(MISSING.read_text().strip() if MISSING.exists() else done.stderr[-200:])
     return PROGRAM
