@@ -21,7 +21,7 @@ import pytest
 from coverage.numbits import nums_to_numbits
 
 ENGINE = "engine/lumen"
-OUT, CONTEXT = "LUMEN_RECORDING", "LUMEN_TEST_CONTEXT"
+OUT, CONTEXT = "LUMEN_TEST_RECORDING", "LUMEN_TEST_CONTEXT"
 SETTINGS = """[run]
 branch = True
 source = {source}

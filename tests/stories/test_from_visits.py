@@ -39,7 +39,7 @@ LONG = {
 }
 """Stories of many minutes, or with several visits, which only `make soak` tries."""
 SAMPLE = 8
-"""The number of other stories that are tried; `LUMEN_SEED=5` draws others."""
+"""The number of other stories that are tried; `LUMEN_TEST_SEED=5` draws others."""
 
 
 def shipped() -> Iterator[Any]:
@@ -47,7 +47,7 @@ def shipped() -> Iterator[Any]:
         (name, file.stem) for name, at in EXAMPLES.items() for file in sorted((at / "behaviors/stories").glob("*.yaml"))
     ]
     short = [one for one in found if one not in LONG]
-    drawn = Random(int(os.environ.get("LUMEN_SEED", "18"))).sample(short, min(SAMPLE, len(short)))
+    drawn = Random(int(os.environ.get("LUMEN_TEST_SEED", "18"))).sample(short, min(SAMPLE, len(short)))
     for one in found:
         yield pytest.param(*one, marks=[] if one in drawn else [pytest.mark.soak])
 

@@ -1,6 +1,6 @@
 """Rest at any moment: the robot rests, or the page shows that it does not. In a real browser, on both buses.
 
-The test asks the robot whether it rests, not the console. `LUMEN_SEED=5` draws other moments.
+The test asks the robot whether it rests, not the console. `LUMEN_TEST_SEED=5` draws other moments.
 """
 
 import os
@@ -29,7 +29,7 @@ from tests.features.console.troubles import (
 )
 from tests.waiting import HANG, until
 
-SEED = int(os.environ.get("LUMEN_SEED", "18"))
+SEED = int(os.environ.get("LUMEN_TEST_SEED", "18"))
 PAGES = ("", "robot/NAO", "robot/NAO/day")
 RESTS = re.compile(r"Rests")
 REFUSES = re.compile(r"NOT SENT|does not rest|no answer came|can't be sent")
