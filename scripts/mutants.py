@@ -272,7 +272,7 @@ def table(results: Iterable[Mapping[str, Any]]) -> str:
     return "\n".join("  ".join([row[0].ljust(widths[0]), *map(str.rjust, row[1:], widths[1:])]) for row in rows)
 
 
-def record(folder: Path, suite: str, words: Sequence[str]) -> int:
+def record(folder: Path, suite: str, workers: int, words: Sequence[str]) -> int:
     """Run a suite, or the tests selected by `words`, and record the lines that each test executes."""
     from mutation.executed import prepare, read
 
@@ -285,7 +285,7 @@ def record(folder: Path, suite: str, words: Sequence[str]) -> int:
         "-p",
         "mutation.executed",
         "-n",
-        str(os.cpu_count()),
+        str(workers),
         "--dist",
         "loadgroup",
     ]
@@ -374,13 +374,18 @@ def main() -> int:
     parser.add_argument("--recording", type=Path, default=ROOT / ".cache/recording", metavar="FOLDER")
     parser.add_argument("--first", type=Path, metavar="FILE", help="the ids of the tests of `make test`, one a line")
     parser.add_argument("--only", default="", metavar="FOLDER", help="draw from this folder of engine/lumen only")
-    parser.add_argument("--workers", type=int, default=2, help="how many mutants are tried at once (default: 2)")
+    parser.add_argument("--workers", type=int, default=2, help="how many mutants or tests run at once (default: 2)")
     parser.add_argument("--results", type=Path, metavar="FILE")
     parser.add_argument("--resume", action="store_true", help="keep the results that are there")
     parser.add_argument("words", nargs="*", help="for --record, after `--`: what pytest is to run instead of the suite")
     options = parser.parse_args()
+    if options.record and options.record.exists():
+        parser.error(f"{options.record} exists: a recording is written into a new folder")
+    needed = [] if options.record else options.compare or [options.recording]
+    if missing := [str(folder) for folder in needed if not folder.is_dir()]:
+        parser.error(f"there is no recording {', '.join(missing)}: `--record FOLDER` writes one")
     if options.record:
-        return record(options.record, options.suite, options.words)
+        return record(options.record, options.suite, options.workers, options.words)
     return compare(*options.compare) if options.compare else draw(options)
 
 

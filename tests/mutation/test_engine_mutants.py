@@ -217,6 +217,20 @@ TESTS = """
 
 
 @pytest.mark.slow
+def test_a_recording_has_the_lines_of_each_test(tmp_path: Path) -> None:
+    test = "tests/app/test_ratelimit.py::test_a_bucket_is_never_fuller_than_full"
+    options = ["--record", tmp_path / "recording", "--workers", "0"]
+    command = [sys.executable, mutants.ROOT / "scripts/mutants.py", *options, "--", test]
+    done = run_guarded(command, capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout + done.stderr
+    located = Located(read(tmp_path / "recording"), {})
+    file = "engine/lumen/upkeep/ratelimit.py"
+    assert located.recording.tests == [test]
+    assert len(located.recording.executed(file)) > 10
+    assert located.recording.executing(file, range(1, 200)) == {test}
+
+
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("tests", "how", "failed"),
     [
