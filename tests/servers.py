@@ -194,10 +194,11 @@ def given(name: str) -> Any:
 @pytest.fixture
 def patient_bus() -> Iterator[None]:
     """A bus on RabbitMQ that waits for a slow broker; a test of one of these limits sets it again."""
-    limits = ("consumer.BIND_TIMEOUT", "polled.BROKER_TIMEOUT", "broker.BROKER_TIMEOUT", "amqp.CLOSE_TIMEOUT")
+    limits = {"consumer.BIND_TIMEOUT": UNLIMITED, "amqp.CLOSE_TIMEOUT": UNLIMITED}  # after these two, a bus continues
+    limits |= {"polled.BROKER_TIMEOUT": HANG, "broker.BROKER_TIMEOUT": HANG}
     with pytest.MonkeyPatch.context() as patch:  # of its own: a test may undo its patches
-        for name in limits:
-            patch.setattr(f"lumen.features.rabbitmq.{name}", HANG)
+        for name, limit in limits.items():
+            patch.setattr(f"lumen.features.rabbitmq.{name}", limit)
         patch.setattr("lumen.features.rabbitmq.broker.HEARTBEAT_INTERVAL", int(UNLIMITED))
         yield
 

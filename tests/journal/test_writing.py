@@ -98,7 +98,7 @@ def test_a_slow_disk_keeps_nobody_waiting_and_what_does_not_fit_is_a_gap(
     disk.free.set()
     assert writer.flush(HANG)
     tell(writer, made[150:])
-    writer.close()
+    writer.close(HANG)
     (gap,) = [entry for entry in read(disk) if isinstance(entry, JournalJump) and entry.kind == "gap"]
     kept = len([entry for entry in read(disk) if not isinstance(entry, JournalJump)])
     assert gap.said["lost"] + kept == len(made)
@@ -117,7 +117,7 @@ def test_a_rehearsed_run_waits_for_a_slow_disk(disk: Disk, monkeypatch: pytest.M
     writer.jumped("start", PROJECT, initial(MACHINE).snapshot)
     tell(writer, made)
     disk.free.set()
-    writer.close()
+    writer.close(HANG)
     jumps = {entry.kind for entry in read(disk) if isinstance(entry, JournalJump)}
     assert "gap" not in jumps
     assert len([entry for entry in read(disk) if not isinstance(entry, JournalJump)]) == len(made)
@@ -136,7 +136,7 @@ def test_a_full_disk_is_told_once_and_costs_entries(
         assert writer.flush(HANG)
     disk.full = False
     tell(writer, made[20:])
-    writer.close()
+    writer.close(HANG)
     assert writer.trouble == "the journal can't be written: no space left on device"
     assert [record.levelname for record in caplog.records] == ["WARNING"]
     assert writer.lost
@@ -152,7 +152,7 @@ def test_a_folder_that_can_not_be_made_costs_the_journal_and_nothing_else(tmp_pa
     writer = begun(Disk(tmp_path / "file" / "journal"))
     tell(writer, steps(5))
     assert writer.flush(HANG)
-    writer.close()
+    writer.close(HANG)
     assert writer.trouble.startswith("the journal can't be written: ")
     assert writer.lost >= 5
 
@@ -170,14 +170,14 @@ def test_a_step_that_asks_for_something_is_on_the_disk_soon_and_in_order(disk: D
 
     until(there)  # without flush or close
     assert [entry.position for entry in read(disk)] == list(range(len(read(disk))))
-    writer.close()
+    writer.close(HANG)
 
 
 def test_another_bundle_begins_another_file(disk: Disk) -> None:
     writer = begun(disk)
     other = bundle(Machine.from_dict({"states": {"idle": {}}}))
     writer.jumped("reload", other, initial(other.machine).snapshot)
-    writer.close()
+    writer.close(HANG)
     assert [read_journal(file).header.bundle for file in disk.files()] == [PROJECT.hash, other.hash]
 
 
@@ -189,7 +189,7 @@ def test_somebody_who_is_forgotten_is_in_no_file_and_nothing_else_is_lost(disk: 
         told.append(step(MACHINE, told[-1].snapshot, Event(name, data, number + 1.0)))
     tell(writer, told[1:])
     writer.forget(PersonName("budi"))
-    writer.close()
+    writer.close(HANG)
     entries = read(disk)
     texts = str(entries)
     assert "Budi" not in texts
@@ -219,7 +219,7 @@ def test_who_comes_home_with_each_step_and_remembers_much_fills_no_disk(disk: Di
         assert told[-1].entered == ("idle",)
     tell(writer, told[1:])
     assert writer.flush(60.0)
-    writer.close()
+    writer.close(HANG)
     standing = [entry for entry in read(disk) if len(line_of(entry)) > 100_000]
     assert 2 <= len(standing) < 6
     again = Recorded(disk.folder, bundles={machine.hash: bundle(machine)}).again()
@@ -233,7 +233,7 @@ def test_a_frame_is_no_larger_than_a_reader_takes(disk: Disk, monkeypatch: pytes
     writer, made = begun(disk), steps(200)
     tell(writer, made)  # all waits while the disk does not answer
     disk.free.set()
-    writer.close()
+    writer.close(HANG)
     assert len([entry for entry in read(disk) if not isinstance(entry, JournalJump)]) == len(made)
     assert all(read_journal(file).whole for file in disk.files())
 
@@ -265,4 +265,4 @@ def test_a_flush_waits_for_what_was_told_while_the_disk_was_being_synced(
     assert not writer.flush(0.1)
     disk.free.set()
     assert writer.flush(HANG)
-    writer.close()
+    writer.close(HANG)

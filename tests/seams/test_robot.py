@@ -20,6 +20,7 @@ from lumen.robot.recording import RecordingRobot
 from lumen.robot.remote import RemoteHall, RemoteRobot, RobotHost
 from tests import ROOT
 from tests.features.naoqi.lockstep import Lockstep
+from tests.waiting import HANG, until
 
 
 class Body(Robot, Hall, Protocol):
@@ -54,7 +55,7 @@ class Remote(RemoteRobot):
     def advance(self, dt: float) -> None:
         self._far.advance(dt)
         self._host.tick(self._far.time)
-        self._host.server.settle(20.0)
+        until(lambda: self._host.server.settle(HANG), what="its senses are published")
 
     def close(self) -> None:
         super().close()

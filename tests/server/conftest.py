@@ -4,11 +4,12 @@ import pytest
 
 from lumen.robot import server
 from lumen.robot.sense_publisher import SensePublisher
-from tests.waiting import HANG
+from tests.waiting import UNLIMITED
 
 
 @pytest.fixture(autouse=True)
 def patient(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(server, "THREAD_START_TIMEOUT", HANG)
-    monkeypatch.setattr(server, "FIRST_IMAGE_TIMEOUT", HANG)
-    monkeypatch.setattr(SensePublisher, "PATIENCE", HANG)
+    monkeypatch.setattr(server, "THREAD_START_TIMEOUT", UNLIMITED)
+    monkeypatch.setattr(server, "FIRST_IMAGE_TIMEOUT", UNLIMITED)
+    monkeypatch.setattr(server, "SENSES_CLOSE_TIMEOUT", UNLIMITED)
+    monkeypatch.setattr(SensePublisher, "PATIENCE", UNLIMITED)

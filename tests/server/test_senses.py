@@ -186,6 +186,7 @@ def test_the_first_image_is_waited_for_once() -> None:
     assert stand.server.counts["image"].published == 1
     release.clear()
     stand.server.sample(0.1)
+    assert stand.server._first_image is None
     assert stand.server.settle(PATIENT)
     assert stand.server.counts["image"].published == 1
     release.set()

@@ -133,5 +133,7 @@ class Hall:
         self.nodes.remove(node)
 
     def close(self) -> None:
+        """Close all nodes; what they still had to tell is delivered."""
         for close in reversed(self.closing):
             close()
+        self.closing, self.nodes = [], []

@@ -57,6 +57,7 @@ def test_of_a_fall_that_it_gets_up_from_nobody_is_told(hall: Hall) -> None:
     hall.until(lambda: "idle" in shown.configuration)
     end = shown.now + 100.0
     hall.until(lambda: shown.now > end)
+    hall.close()
     assert hall.web.bodies == []
 
 
@@ -128,7 +129,6 @@ def test_files_that_are_refused(hall: Hall) -> None:
 def test_a_start_on_the_last_good_files(hall: Hall) -> None:
     hall.whole()
     hall.close()
-    hall.closing, hall.nodes = [], []
     tour = hall.folder / "behaviors/tour.yaml"
     tour.write_text(tour.read_text().replace("onDone: idle", "onDone: nowhere"))
     hall.whole(last_good=True)
@@ -139,7 +139,6 @@ def test_a_run_that_ended_without_notice(hall: Hall) -> None:
     hall.whole()
     hall.until(lambda: (hall.folder / ".lumen/snapshot.json").exists())
     hall.close()
-    hall.closing, hall.nodes = [], []
     hall.whole()
     assert hall.told("crashed").startswith("it ended unexpectedly, and continues after ")
 
@@ -156,6 +155,7 @@ def test_a_disk_that_is_full(hall: Hall, monkeypatch: pytest.MonkeyPatch) -> Non
     hall.whole()
     assert hall.told("disk") == "the disk is nearly full: 12 MB are left"
     hall.live(200)
+    hall.close()
     assert len(hall.web.of("disk")) == 1, "it is told when it begins"
 
 
@@ -416,4 +416,5 @@ def test_saved_files_say_who_is_told_from_now_on(hall: Hall, web: Callable[..., 
     shown.stop()
     hall.live(2)
     until(lambda: other.of("stopped"))
+    hall.close()
     assert hall.web.bodies == []

@@ -21,6 +21,7 @@ from lumen.retrieval.retriever import Retriever
 from tests.features.answers.conftest import Desk, with_model
 from tests.features.answers.fake_model import Handler, fake_model
 from tests.features.answers.test_questions import Visit
+from tests.waiting import HANG
 
 WRITTEN: dict[str, Any] = yaml.safe_load((Path(__file__).parent / "injections.yaml").read_text("utf-8"))
 OFFERS = {"wish.dance": {"type": "object", "additionalProperties": False}}
@@ -98,7 +99,7 @@ class ObeyingVisit:
         here.exhibition.run(0.1)
         if not any(isinstance(command.command, Ask) for command in started(here, first)):
             return False  # these words are some of the tour's own
-        assert self.module.settle(10)
+        assert self.module.settle(HANG)
         asked = here.exhibition.now
         here.passes("any_question", 30.0)
         done = started(here, first)

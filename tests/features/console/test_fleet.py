@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from lumen.bus.memory import MemoryBus
+from lumen.features.console import fleet_pages
 from lumen.features.console.people import Role
 from lumen.features.console.serving import Console
 from lumen.run.reaching import Reached
@@ -96,7 +97,8 @@ def test_the_page_shows_the_fleet_and_stops_its_rollout(viewer: Viewer, watched:
     assert viewer.complaints() == []
 
 
-def test_where_no_centre_is_the_page_says_so(watched: Watched) -> None:
+def test_where_no_centre_is_the_page_says_so(watched: Watched, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(fleet_pages, "ANSWER_TIMEOUT", 0.2)
     watched.hall.served._desk.close()
     answer = watched.browser.get("/api/fleet", Authorization="Bearer 12345")
     assert answer.status == 503
