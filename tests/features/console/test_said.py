@@ -87,6 +87,16 @@ def test_all_that_hear_at_once_could_have_taken_it() -> None:
     assert told["rows"]["quiz ask"] == ["right", "else"]
 
 
+def test_days_without_visits_are_not_offered_while_another_has_some() -> None:
+    waiting = machine_from_dict(
+        {"states": {"idle": {"on": {"heard": "talk"}}, "talk": {"on": {"bye": "idle"}}}}, "guide", {}
+    )
+    [begun] = entries(waiting)
+    heard = JournalInput(1, "heard", Event("heard", {}, 86_400.0), entered=("talk",), exited=("idle",))
+    assert day_of([begun], lambda *_: waiting, None).dates == [date(1970, 1, 1)]
+    assert day_of([begun, heard], lambda *_: waiting, None).dates == [date(1970, 1, 2)]
+
+
 def test_a_behaviour_without_rows_lists_nothing() -> None:
     still = machine_from_dict({"states": {"a": {"on": {"heard": "a"}}}}, "guide", {})
     assert numbers(day(still, "hello"))["said"] == []

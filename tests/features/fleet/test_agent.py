@@ -361,6 +361,13 @@ def test_a_folder_that_cannot_be_written_is_told_once_until_it_has_the_files(hou
     assert house.agent.presence(10.0, {}).trouble == ""
 
 
+def test_a_folder_of_bundles_that_cannot_be_written_is_told(house: House) -> None:
+    house.send(changed(house.root))
+    house.agent._folder._path(fingerprint(house.taker.offered[-1][0])).mkdir()
+    house.taker.take(house.agent)
+    assert house.agent.presence(10.0, {}).trouble == "fleet can't be written: is a directory"
+
+
 def test_counts_begin_anew_with_other_files_and_those_before_are_kept(house: House) -> None:
     house.agent.presence(3600.0, {"falls": 2})
     house.send(changed(house.root))

@@ -149,6 +149,7 @@ def test_dmx_is_kept_alive_and_darkens_nothing_before_its_first_message(
         receiver.settimeout(HANG)
         packets = [receiver.recv(1000) for _ in range(3)]
     assert [len(packet) for packet in packets] == [638] * 3
+    assert {packet[:16] for packet in packets} == {b"\x00\x10\x00\x00ASC-E1.17\x00\x00\x00"}  # E1.31, 5.1 to 5.3
     assert [packet[111] for packet in packets] == [0, 1, 2]
     assert {packet[126] for packet in packets} == {255}
 

@@ -238,6 +238,7 @@ def test_a_program_that_crashed_is_started_again_after_a_pause(acting: Stage, mo
     for pause in (0.5, 1.0):
         id = acting.start("act")
         acting.until_told(f"its program is started again in {pause} s")
+        assert acting.workshop.states["act"]["state"] == "paused"
         now += pause
         assert "exit code 1" in acting.end(id)
     assert len([line for line in acting.told if "again" in line]) == 2
