@@ -56,6 +56,13 @@ def test_without_whenever_it_counts_from_the_beginning() -> None:
     assert broken({"p": {"eventually": "In('b')", "within": "2s"}}, states) == [("a", [])]
 
 
+def test_each_wait_of_a_way_counts_from_the_step_before_it() -> None:
+    states = {"a": {"after": {"2s": "b"}}, "b": {"after": {"3s": "c"}}, "c": {}}
+    machine = Machine.from_dict({"states": states, "properties": {"p": {"always": "!In('c')"}}})
+    [found] = [f for f in explore(machine, GO).findings if f.kind == "property"]
+    assert [step.stimulus.waited for step in found.path if step.stimulus] == [2.0, 3.0]
+
+
 def test_what_a_property_reads_makes_configurations_differ() -> None:
     states = {"a": {"on": {"go": {"target": "a", "actions": {"assign": {"n": "context.n + 1"}}}}}}
     found = broken({"p": {"always": "context.n < 4"}}, states, context={"n": 0})
