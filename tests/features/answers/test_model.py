@@ -244,6 +244,7 @@ def test_sentences_are_whole() -> None:
         ("call me at +62 812", "en", False),
         ("mail me at a@b", "en", False),
         ("It is ② metres.", "en", False),
+        ("It is in hall b12.", "en", False),
         ("It is in Jalan Ganesha.", "en", False),
         ("x" * 301, "en", False),
     ],

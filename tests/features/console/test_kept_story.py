@@ -120,6 +120,14 @@ def test_a_full_disk_is_a_sentence(tmp_path: Path, monkeypatch: pytest.MonkeyPat
         kept_stories._created(tmp_path, "visit", "")
 
 
+def test_a_folder_of_stories_that_is_a_link_is_not_written_to(tmp_path: Path) -> None:
+    (tmp_path / "behaviors").mkdir()
+    (tmp_path / "behaviors/stories").symlink_to(tmp_path, target_is_directory=True)
+    with pytest.raises(UsageError, match="behaviors/stories/ is a symbolic link: replace it with a folder"):
+        kept_stories._created(tmp_path, "visit", "")
+    assert list(tmp_path.glob("*.yaml")) == []
+
+
 def test_only_an_author_sees_it(viewer: Viewer, visited: Hosted, console: str) -> None:
     viewer.open(console, "robot/NAO/day", ready=".day .entry", mode="operator")
     assert not viewer.all(".keep-story")
