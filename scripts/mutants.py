@@ -379,10 +379,12 @@ def main() -> int:
     parser.add_argument("--resume", action="store_true", help="keep the results that are there")
     parser.add_argument("words", nargs="*", help="for --record, after `--`: what pytest is to run instead of the suite")
     options = parser.parse_args()
+    if options.workers < (0 if options.record else 1):
+        parser.error("--workers is at least 1; with --record, 0 runs all tests in one process")
     if options.record and options.record.exists():
         parser.error(f"{options.record} exists: a recording is written into a new folder")
     needed = [] if options.record else options.compare or [options.recording]
-    if missing := [str(folder) for folder in needed if not folder.is_dir()]:
+    if missing := [str(folder) for folder in needed if not any(folder.glob("*.pickle"))]:
         parser.error(f"there is no recording {', '.join(missing)}: `--record FOLDER` writes one")
     if options.record:
         return record(options.record, options.suite, options.workers, options.words)
